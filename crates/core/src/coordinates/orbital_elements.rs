@@ -1,0 +1,147 @@
+//! Classical orbital elements.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::{Inertial, wrap_to_turn};
+
+/// The size of an orbit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OrbitShape {
+    /// a, m: positive for ellipses, negative for hyperbolas; parabolas have none.
+    SemiMajorAxis(f64),
+    /// p, m: positive for every orbit.
+    SemiLatusRectum(f64),
+}
+
+/// The orbit that a state would follow if nothing but a point's gravity acted on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrbitalElements {
+    /// Its size.
+    pub shape: OrbitShape,
+    /// e: 0 a circle, below 1 an ellipse, 1 a parabola, above a hyperbola.
+    pub eccentricity: f64,
+    /// i, between the orbit's angular momentum and the pole, in [0, π].
+    pub inclination: f64,
+    /// Ω, right ascension of the ascending node, from the inertial x axis, in [0, 2π).
+    pub raan: f64,
+    /// ω, from the ascending node to the periapsis in the direction of motion, in [0, 2π).
+    pub argument_of_periapsis: f64,
+    /// ν, from the periapsis to the vehicle, in [0, 2π).
+    pub true_anomaly: f64,
+}
+
+/// Elements that a state leaves undefined; they take the values of Vallado's conventions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UndefinedElements {
+    /// A circle has no periapsis: `argument_of_periapsis` is 0 and `true_anomaly` counts from the node.
+    pub circular: bool,
+    /// An orbit in the equator has no node: `raan` is 0 and the argument of periapsis counts from the x axis in the direction of motion.
+    pub equatorial: bool,
+}
+
+/// Rectilinear motion, towards or away from the centre, has no orbital elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("rectilinear motion has no orbital elements")]
+pub struct NoElements;
+
+/// Eccentricities and sines of the inclination below this are noise: f64 keeps them to about 1e-15.
+const UNDEFINED: f64 = 1e-12;
+/// Below this ratio of semi-latus rectum to radius the elements keep fewer than eight digits of the state.
+const RECTILINEAR: f64 = 1e-8;
+
+impl OrbitalElements {
+    /// p, m.
+    ///
+    /// # Reference
+    /// Jameson 2006, equation 63.
+    pub fn semi_latus_rectum(&self) -> f64 {
+        match self.shape {
+            OrbitShape::SemiMajorAxis(a) => a * (1.0 - self.eccentricity) * (1.0 + self.eccentricity),
+            OrbitShape::SemiLatusRectum(p) => p,
+        }
+    }
+
+    /// The inertial position and velocity, under the gravitational parameter in m³/s².
+    ///
+    /// # Reference
+    /// Jameson 2006, equations 61 to 67.
+    pub fn to_inertial(&self, gravitational_parameter: f64) -> Inertial {
+        let p = self.semi_latus_rectum();
+        let (sin_nu, cos_nu) = self.true_anomaly.sin_cos();
+        let radius = p / (1.0 + self.eccentricity * cos_nu);
+        let position = Vector3::new(cos_nu, sin_nu, 0.0) * radius;
+        let velocity = Vector3::new(-sin_nu, self.eccentricity + cos_nu, 0.0) * (gravitational_parameter / p).sqrt();
+        let from_perifocal = Rotation3::from_axis_angle(&Vector3::z_axis(), self.raan)
+            * Rotation3::from_axis_angle(&Vector3::x_axis(), self.inclination)
+            * Rotation3::from_axis_angle(&Vector3::z_axis(), self.argument_of_periapsis);
+        Inertial { position: from_perifocal * position, velocity: from_perifocal * velocity }
+    }
+
+    /// The elements of an inertial state under the gravitational parameter in m³/s², and which of them are conventions.
+    ///
+    /// The shape is the semi-major axis but for a parabola (|1 - e| < 1e-12), which has a semi-latus rectum.
+    ///
+    /// # Errors
+    /// [`NoElements`] for motion towards or away from the centre.
+    ///
+    /// # Reference
+    /// D. A. Vallado, Fundamentals of Astrodynamics and Applications, 4th ed. 2013, algorithm 9, with arc tangents for its arc cosines.
+    pub fn from_inertial(
+        state: &Inertial,
+        gravitational_parameter: f64,
+    ) -> Result<(Self, UndefinedElements), NoElements> {
+        let (r, v) = (&state.position, &state.velocity);
+        let radius = r.norm();
+        let momentum = r.cross(v);
+        let p = momentum.norm_squared() / gravitational_parameter;
+        if p.is_nan() || p < RECTILINEAR * radius {
+            return Err(NoElements);
+        }
+        let normal = momentum / momentum.norm();
+        let eccentricity_vector = v.cross(&momentum) / gravitational_parameter - r / radius;
+        let eccentricity = eccentricity_vector.norm();
+        let equatorial = normal.x.hypot(normal.y) < UNDEFINED;
+        let circular = eccentricity < UNDEFINED;
+
+        let node = if equatorial { Vector3::x() } else { Vector3::new(-normal.y, normal.x, 0.0).normalize() };
+        let across = normal.cross(&node);
+        let argument = |vector: &Vector3<f64>| vector.dot(&across).atan2(vector.dot(&node));
+        let argument_of_periapsis = if circular { 0.0 } else { wrap_to_turn(argument(&eccentricity_vector)) };
+        let parabolic = (1.0 - eccentricity).abs() < UNDEFINED;
+        let elements = Self {
+            shape: if parabolic {
+                OrbitShape::SemiLatusRectum(p)
+            } else {
+                OrbitShape::SemiMajorAxis(p / ((1.0 - eccentricity) * (1.0 + eccentricity)))
+            },
+            eccentricity,
+            inclination: normal.x.hypot(normal.y).atan2(normal.z),
+            raan: wrap_to_turn(node.y.atan2(node.x)),
+            argument_of_periapsis,
+            true_anomaly: wrap_to_turn(argument(r) - argument_of_periapsis),
+        };
+        Ok((elements, UndefinedElements { circular, equatorial }))
+    }
+
+    /// Distance of the periapsis from the centre, m.
+    pub fn periapsis_radius(&self) -> f64 {
+        self.semi_latus_rectum() / (1.0 + self.eccentricity)
+    }
+
+    /// Distance of the apoapsis from the centre, m; none for an unbound orbit.
+    pub fn apoapsis_radius(&self) -> Option<f64> {
+        self.is_bound().then(|| self.semi_latus_rectum() / (1.0 - self.eccentricity))
+    }
+
+    /// The time of one revolution, s; none for an unbound orbit.
+    pub fn period(&self, gravitational_parameter: f64) -> Option<f64> {
+        let a = self.semi_latus_rectum() / ((1.0 - self.eccentricity) * (1.0 + self.eccentricity));
+        self.is_bound().then(|| TAU * a * (a / gravitational_parameter).sqrt())
+    }
+
+    fn is_bound(&self) -> bool {
+        1.0 - self.eccentricity >= UNDEFINED
+    }
+}

@@ -1,0 +1,74 @@
+//! What happens inside a step: the first fall of a quantity through zero, and its maximum.
+//!
+//! A quantity comes with its rate of change per second, as a dual number, at the two ends of the step and,
+//! where the ends ask for a closer look, at any part (0 to 1) of the step.
+
+use num_dual::Dual64;
+
+use crate::root;
+
+/// The part of the step at which the quantity first falls to zero, if it does.
+///
+/// A quantity that dips below zero and is back at the end of the step is found as well.
+/// One that starts at or below zero must rise first; while it sinks or comes down without having been positive,
+/// the fall is where it turns down.
+pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
+    let reach = length * start.eps.abs().max(end.eps.abs());
+    if start.re.min(end.re) > reach {
+        return None;
+    }
+    let mut from = (0.0, start);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        let to = (part, if part < 1.0 { inside(part) } else { end });
+        let fall = fall_between(from, to, length, &inside);
+        if fall.is_some() {
+            return fall;
+        }
+        from = to;
+    }
+    None
+}
+
+/// The part of the step at which the quantity is greatest, if it rises at the start and falls at the end.
+pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
+    (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), &inside))
+}
+
+/// A part of the step, and the quantity there.
+type Sample = (f64, Dual64);
+
+fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
+    let crossing = |a: Sample, b: Sample| root::bracketed(|part| inside(part).re, (a.0, a.1.re), (b.0, b.1.re));
+    if a.1.eps > 0.0 && b.1.eps < 0.0 {
+        let part = turning_point(a, b, inside);
+        let top = (part, inside(part));
+        if top.1.re <= 0.0 {
+            return Some(part);
+        }
+        return (b.1.re <= 0.0).then(|| crossing(top, b));
+    }
+    if a.1.re <= 0.0 {
+        return (a.1.eps < 0.0).then_some(a.0);
+    }
+    if b.1.re <= 0.0 {
+        return Some(crossing(a, b));
+    }
+    if a.1.eps < 0.0 && b.1.eps > 0.0 && tangents_meet(a, b, length) < 0.0 {
+        let part = turning_point(a, b, inside);
+        let bottom = (part, inside(part));
+        return (bottom.1.re <= 0.0).then(|| crossing(a, bottom));
+    }
+    None
+}
+
+/// Where the rate changes sign.
+fn turning_point(a: Sample, b: Sample, inside: &impl Fn(f64) -> Dual64) -> f64 {
+    root::bracketed(|part| inside(part).eps, (a.0, a.1.eps), (b.0, b.1.eps))
+}
+
+/// The value at which the tangents of the two ends meet: a quantity that falls, then rises, stays above it.
+fn tangents_meet(a: Sample, b: Sample, length: f64) -> f64 {
+    let length = (b.0 - a.0) * length;
+    let time = (b.1.re - a.1.re - b.1.eps * length) / (a.1.eps - b.1.eps);
+    a.1.re + a.1.eps * time
+}

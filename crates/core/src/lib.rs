@@ -1,0 +1,76 @@
+//! Flight of a point mass through the atmosphere of a rotating planet.
+//!
+//! A [`Scenario`] is the question, [`simulate`](simulate::simulate) flies it, a [`Trajectory`] is the answer. The core is a pure
+//! function of its arguments: it knows no JSON, no clock, no threads and no files.
+//!
+//! # Conventions
+//!
+//! - SI units and radians, everywhere.
+//! - Frames: inertial, planet-fixed, and the local horizon; [`coordinates`] draws them once.
+//! - Longitude is positive to the east; latitudes are named geocentric or geodetic; the heading counts from east towards north,
+//!   the azimuth clockwise from north; the bank angle is positive to the left of the flight direction.
+//! - `altitude` is the height along the radius vector, which drives the dynamics; `geodetic_altitude` is that along the normal.
+//! - `speed` and `velocity` are relative to the rotating planet unless they are called inertial.
+//! - Time counts in seconds from the initial state.
+//!
+//! # Example
+//!
+//! ```
+//! use std::sync::atomic::AtomicBool;
+//!
+//! use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop, Vehicle, simulate};
+//!
+//! let entry = FlightPath {
+//!     radius: 6_500_140.0,
+//!     longitude: -1.347_32,
+//!     geocentric_latitude: 0.651_76,
+//!     speed: 3_007.2,
+//!     flight_path_angle: -0.523_599,
+//!     heading: 1.195_427,
+//! };
+//! let case = Case {
+//!     planet: Planet::EARTH_WGS84.spherical(),
+//!     atmosphere: Atmosphere::EARTH_JAMESON,
+//!     vehicle: Vehicle {
+//!         mass: 700.0,
+//!         reference_area: 0.216_419,
+//!         aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.2, drag_coefficient: 0.2 },
+//!     },
+//!     bank_angle: 0.8,
+//!     initial_state: entry.to_planet_fixed(),
+//!     stop: Stop::default(),
+//!     solver: Solver::default(),
+//! };
+//! let flight = simulate(&Scenario::new(case)?, &AtomicBool::new(false))?;
+//! assert!((flight.end_time() - 157.436_433).abs() < 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Reference
+//!
+//! R. E. Jameson Jr, Development and Validation of Reentry Simulation Using MATLAB, thesis AFIT/GSS/ENY/06-M08, Air Force
+//! Institute of Technology, March 2006: "Jameson 2006" in these pages, and its errata in the README.
+
+pub mod scenario;
+pub mod simulate;
+pub mod trajectory;
+
+pub mod motion;
+
+pub mod atmosphere;
+pub mod planet;
+pub mod vehicle;
+
+pub mod coordinates;
+
+pub mod integrate;
+pub mod root;
+pub mod scalar;
+
+pub use atmosphere::Atmosphere;
+pub use coordinates::{FlightPath, PlanetFixed};
+pub use planet::Planet;
+pub use scenario::{Case, Scenario, Solver, Stop};
+pub use simulate::simulate;
+pub use trajectory::Trajectory;
+pub use vehicle::{Aerodynamics, Vehicle};

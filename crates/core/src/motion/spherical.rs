@@ -1,0 +1,89 @@
+//! The spherical formulation of the thesis. It is singular at the poles, in vertical flight and at rest.
+
+use super::{Forces, Formulation, Singularity, dynamic_pressure, lift_fade_over_cosine};
+use crate::coordinates::{FlightPath, PlanetFixed};
+use crate::integrate::System;
+use crate::scalar::Scalar;
+
+/// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
+#[derive(Clone, Copy, Debug)]
+pub struct Spherical(pub Forces);
+
+impl System<6> for Spherical {
+    /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text.
+    #[inline(always)]
+    fn derivative<S: Scalar>(&self, coordinates: &[S; 6]) -> [S; 6] {
+        let Forces { planet, atmosphere, vehicle, sin_cos_bank: (sin_sigma, cos_sigma) } = self.0;
+        let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
+            FlightPath::from(*coordinates);
+        let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();
+        let (sin_gamma, cos_gamma) = flight_path_angle.sin_cos();
+        let (sin_psi, cos_psi) = heading.sin_cos();
+        let omega = planet.rotation_rate;
+
+        let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
+        let air = vehicle.aerodynamic_acceleration(dynamic_pressure(atmosphere.density(altitude), v));
+        let lift_over_cos_gamma = air.lift * lift_fade_over_cosine(cos_gamma * cos_gamma);
+        let g = planet.gravity(r);
+        // rω² cos φ
+        let centrifugal = r * cos_phi * (omega * omega);
+
+        // ṙ = V sin γ   (9)
+        let r_rate = v * sin_gamma;
+        // θ̇ = V cos γ cos ψ / (r cos φ)   (10)
+        let longitude_rate = v * cos_gamma * cos_psi / (r * cos_phi);
+        // φ̇ = V cos γ sin ψ / r   (11)
+        let latitude_rate = v * cos_gamma * sin_psi / r;
+        // V̇ = -D/m - g sin γ + rω² cos φ (cos φ sin γ - sin φ sin ψ cos γ)   (29)
+        let v_rate = -air.drag - g * sin_gamma + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
+        // Vγ̇ = (L/m) cos σ - g cos γ + (V²/r) cos γ + 2Vω cos φ cos ψ + rω² cos φ (cos φ cos γ + sin φ sin ψ sin γ)   (30)
+        let gamma_rate = (lift_over_cos_gamma * cos_gamma * cos_sigma - g * cos_gamma
+            + v * v / r * cos_gamma
+            + v * cos_phi * cos_psi * (2.0 * omega)
+            + centrifugal * (cos_phi * cos_gamma + sin_phi * sin_psi * sin_gamma))
+            / v;
+        // Vψ̇ = L sin σ/(m cos γ) - (V²/r) cos γ cos ψ tan φ + 2Vω (sin ψ cos φ tan γ - sin φ) - (rω²/cos γ) sin φ cos φ cos ψ   (31)
+        let psi_rate = (lift_over_cos_gamma * sin_sigma - v * v / r * cos_gamma * cos_psi * sin_phi / cos_phi
+            + v * (sin_psi * cos_phi * sin_gamma / cos_gamma - sin_phi) * (2.0 * omega)
+            - centrifugal * sin_phi * cos_psi / cos_gamma)
+            / v;
+        [r_rate, longitude_rate, latitude_rate, v_rate, gamma_rate, psi_rate]
+    }
+
+    fn magnitudes(&self) -> [f64; 6] {
+        let [length, speed] = self.0.units();
+        [length, 1.0, 1.0, speed, 1.0, 1.0]
+    }
+
+    fn longest_step(&self, coordinates: &[f64; 6], _: &[f64; 6]) -> f64 {
+        self.0.longest_step(&Self::planet_fixed(coordinates))
+    }
+}
+
+impl Formulation for Spherical {
+    fn coordinates(state: &PlanetFixed<f64>) -> [f64; 6] {
+        FlightPath::from_planet_fixed(state).into()
+    }
+
+    fn planet_fixed<S: Scalar>(coordinates: &[S; 6]) -> PlanetFixed<S> {
+        FlightPath::from(*coordinates).to_planet_fixed()
+    }
+
+    fn singularity(&self, coordinates: &[f64; 6], within: f64) -> Option<Singularity> {
+        let state = FlightPath::from(*coordinates);
+        let [_, circular_speed] = self.0.units();
+        if state.speed <= within * circular_speed {
+            Some(Singularity::Rest)
+        } else if state.geocentric_latitude.cos() <= within {
+            Some(Singularity::Pole)
+        } else if state.flight_path_angle.cos() <= within {
+            Some(Singularity::VerticalFlight)
+        } else {
+            None
+        }
+    }
+
+    fn forces(&self) -> &Forces {
+        &self.0
+    }
+}

@@ -1,0 +1,112 @@
+//! The number types in which the physics is written once: `f64`, and the dual numbers of `num-dual`, which carry derivatives.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, Vector3};
+use num_dual::{DualNum, DualStruct};
+use num_traits::{One, Zero};
+
+/// A real number, with or without derivatives.
+///
+/// Formulas keep their constants on the right (`speed * speed * 0.5`), so that these bounds suffice,
+/// and choose with [`select`](Self::select) in place of `if`, so that numbers which hold several values can follow.
+/// The value of a dual number goes through the very operations that `f64` goes through: both give the same digits.
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Zero
+    + One
+    + From<f64>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// The answer to a comparison.
+    type Mask: Copy;
+
+    /// The number without its derivatives.
+    fn value(self) -> f64;
+
+    /// Whether the value is less than `other`.
+    fn less_than(self, other: f64) -> Self::Mask;
+
+    /// `chosen` where the mask holds, `otherwise` where it does not.
+    fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
+
+    /// The square root; at zero its slope is taken as zero, that of the length of a vector at its smallest.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// e to the power of `self`.
+    #[must_use]
+    fn exp(self) -> Self;
+
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The angle of the point (`x`, `self`), in (-π, π].
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+}
+
+impl<D> Scalar for D
+where
+    D: DualNum<Primitive = f64> + DualStruct<Real = f64> + nalgebra::Scalar + Copy,
+{
+    type Mask = bool;
+
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.re()
+    }
+
+    #[inline(always)]
+    fn less_than(self, other: f64) -> bool {
+        self.re() < other
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, chosen: Self, otherwise: Self) -> Self {
+        if mask { chosen } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        if self.re() == 0.0 { Self::zero() } else { DualNum::sqrt(&self) }
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        DualNum::exp(&self)
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        DualNum::sin_cos(&self)
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        DualNum::atan2(&self, x)
+    }
+}
+
+/// The length of a vector.
+#[inline(always)]
+pub fn length<S: Scalar>(vector: &Vector3<S>) -> S {
+    vector.dot(vector).sqrt()
+}
+
+/// The vector divided by its `length`; the zero vector stays zero.
+#[inline(always)]
+pub fn direction<S: Scalar>(vector: &Vector3<S>, length: S) -> Vector3<S> {
+    let divisor = S::select(length.less_than(f64::MIN_POSITIVE), S::one(), length);
+    let reciprocal = S::one() / divisor;
+    vector.map(|component| component * reciprocal)
+}

@@ -1,0 +1,358 @@
+//! The question: what flies where, from which state, until when, and how exactly.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt;
+
+use num_dual::Dual2_64;
+
+use crate::atmosphere::Atmosphere;
+use crate::coordinates::PlanetFixed;
+use crate::motion::Forces;
+use crate::planet::Planet;
+use crate::vehicle::{Aerodynamics, Vehicle};
+
+/// The values that a number may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// The least value.
+    pub minimum: f64,
+    /// Whether the least value itself is left out.
+    pub exclusive: bool,
+    /// The greatest value.
+    pub maximum: f64,
+}
+
+impl Bound {
+    /// Every finite number.
+    pub const FINITE: Self = Self::between(f64::MIN, f64::MAX);
+    /// mass, scale height.
+    pub const POSITIVE: Self = Self::above(0.0, f64::MAX);
+    /// reference area, density, drag coefficient, eccentricity.
+    pub const NON_NEGATIVE: Self = Self::between(0.0, f64::MAX);
+    /// Speeds, m/s.
+    pub const SPEED: Self = Self::between(0.0, 1e6);
+    /// Coordinates and altitudes, m.
+    pub const DISTANCE: Self = Self::between(-1e12, 1e12);
+    /// Radii, m.
+    pub const RADIUS: Self = Self::above(0.0, 1e12);
+    /// Latitudes and flight-path angles, rad.
+    pub const QUARTER_TURN: Self = Self::between(-FRAC_PI_2, FRAC_PI_2);
+    /// The inclination, rad.
+    pub const HALF_TURN: Self = Self::between(0.0, PI);
+    /// Every other angle, rad.
+    pub const TURN: Self = Self::between(-TAU, TAU);
+    /// Gravitational parameters, m³/s²; the Sun's is 1.3e20.
+    pub const GRAVITATIONAL_PARAMETER: Self = Self::above(0.0, 1e25);
+    /// Rotation rates, rad/s.
+    pub const ROTATION_RATE: Self = Self::between(-1.0, 1.0);
+    /// The time at which a flight ends, s.
+    pub const STOP_TIME: Self = Self::above(0.0, 1e9);
+    /// The relative tolerance of the integration.
+    pub const RELATIVE_TOLERANCE: Self = Self::between(1e-14, 1e-3);
+
+    const fn between(minimum: f64, maximum: f64) -> Self {
+        Self { minimum, exclusive: false, maximum }
+    }
+
+    const fn above(minimum: f64, maximum: f64) -> Self {
+        Self { minimum, exclusive: true, maximum }
+    }
+
+    /// Whether the value is one of them; no bound admits what is not finite.
+    pub fn admits(&self, value: f64) -> bool {
+        let above = if self.exclusive { value > self.minimum } else { value >= self.minimum };
+        above && value <= self.maximum
+    }
+
+    /// The same bound for numbers in another unit, `scale` times as large.
+    #[must_use]
+    pub fn scaled(self, scale: f64) -> Self {
+        Self { minimum: self.minimum * scale, maximum: self.maximum * scale, ..self }
+    }
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unbounded = |limit: f64| limit.abs() >= f64::MAX;
+        match (self.exclusive, unbounded(self.minimum), unbounded(self.maximum)) {
+            (_, true, true) => write!(f, "finite"),
+            (true, _, true) => write!(f, "greater than {}", self.minimum),
+            (true, _, false) => write!(f, "greater than {} and at most {}", self.minimum, Plain(self.maximum)),
+            (false, true, false) => write!(f, "at most {}", Plain(self.maximum)),
+            (false, false, true) => write!(f, "at least {}", self.minimum),
+            (false, false, false) => write!(f, "between {} and {}", Plain(self.minimum), Plain(self.maximum)),
+        }
+    }
+}
+
+/// A number as people write it: with an exponent where the digits would not fit.
+struct Plain(f64);
+
+impl fmt::Display for Plain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let magnitude = self.0.abs();
+        if magnitude != 0.0 && !(1e-4..1e7).contains(&magnitude) {
+            write!(f, "{:e}", self.0)
+        } else {
+            write!(f, "{}", self.0)
+        }
+    }
+}
+
+/// When a flight ends at the latest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// The altitude, m, along the radius vector, whose downward crossing ends the flight.
+    pub altitude: f64,
+    /// The time, s.
+    pub time: f64,
+}
+
+impl Default for Stop {
+    fn default() -> Self {
+        Self { altitude: 0.0, time: 10_000.0 }
+    }
+}
+
+/// The equations to integrate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Equations {
+    /// Planet-fixed position and velocity: no singularities.
+    #[default]
+    Cartesian,
+    /// The thesis's: singular at the poles, in vertical flight and at rest.
+    Spherical,
+}
+
+/// How to integrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solver {
+    /// The equations.
+    pub equations: Equations,
+    /// The error allowed in one step, relative to r₀ and √(g₀r₀) or to the state where that is larger.
+    pub relative_tolerance: f64,
+    /// The limit on accepted and rejected steps together.
+    pub step_limit: usize,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self { equations: Equations::default(), relative_tolerance: 1e-10, step_limit: 100_000 }
+    }
+}
+
+/// The parts of a scenario, not yet checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// Where it flies.
+    pub planet: Planet,
+    /// The air.
+    pub atmosphere: Atmosphere,
+    /// What flies.
+    pub vehicle: Vehicle,
+    /// σ, rad; see [`Forces::sin_cos_bank`].
+    pub bank_angle: f64,
+    /// The state at t = 0.
+    pub initial_state: PlanetFixed<f64>,
+    /// When it ends.
+    pub stop: Stop,
+    /// How to integrate.
+    pub solver: Solver,
+}
+
+/// A sound case: one that exists can be flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scenario {
+    case: Case,
+    on_stop_altitude: Option<Heading>,
+}
+
+/// Where a state on the stop altitude goes next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Heading {
+    Up,
+    Down,
+}
+
+/// Something in a case that cannot be flown.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A number out of its bounds.
+    #[error("{field} must be {bound}, got {value}")]
+    OutOfBounds {
+        /// Its place in the [`Case`].
+        field: &'static str,
+        /// The number.
+        value: f64,
+        /// What it may be.
+        bound: Bound,
+    },
+    /// The planet is too flat or too long.
+    #[error("polar_radius must be between 0.1 and 10 times equatorial_radius, got {ratio} times")]
+    OddShape {
+        /// Polar over equatorial radius.
+        ratio: f64,
+    },
+    /// The altitude that ends the flight lies at the planet's centre or beyond.
+    #[error("the stop altitude must be greater than {minimum} m, that of the planet's centre, got {altitude}")]
+    StopBelowCentre {
+        /// The stop altitude, m.
+        altitude: f64,
+        /// The altitude of the centre, m.
+        minimum: f64,
+    },
+    /// The position is the planet's centre.
+    #[error("the position is the planet's centre, where gravity has no direction")]
+    AtCentre,
+    /// The position is too far away.
+    #[error("the distance from the planet's centre must be at most {} m, got {distance}", Plain(Bound::RADIUS.maximum))]
+    TooFar {
+        /// From the planet's centre, m.
+        distance: f64,
+    },
+    /// The motion is too fast.
+    #[error("the speed relative to the rotating planet must be at most {} m/s, got {speed}", Plain(Bound::SPEED.maximum))]
+    TooFast {
+        /// Relative to the rotating planet, m/s.
+        speed: f64,
+    },
+    /// The initial position lies below the altitude at which the flight would end.
+    #[error("the initial altitude of {altitude} m lies below the stop altitude of {stop} m")]
+    BelowStopAltitude {
+        /// The initial altitude, m.
+        altitude: f64,
+        /// The stop altitude, m.
+        stop: f64,
+    },
+    /// The initial acceleration overflows.
+    #[error("the initial acceleration is not a finite number")]
+    InfiniteAcceleration,
+}
+
+/// Everything that is wrong with a case.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the case cannot be flown: {}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct ScenarioError(pub Vec<Fault>);
+
+/// An altitude this near the stop altitude, m, counts as on it.
+const ON_STOP_ALTITUDE: f64 = 1e-3;
+
+impl Scenario {
+    /// Checks a case.
+    ///
+    /// # Errors
+    /// With every fault that was found.
+    pub fn new(case: Case) -> Result<Self, ScenarioError> {
+        let mut faults = out_of_bounds(&case);
+        if !faults.is_empty() {
+            return Err(ScenarioError(faults));
+        }
+        let state = &case.initial_state;
+        let altitude = case.planet.shape.altitude(&state.position);
+        faults.extend(planet_faults(&case.planet, &case.stop));
+        faults.extend(state_faults(state));
+        if faults.is_empty() {
+            if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
+                faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
+            }
+            let loads = case.forces().loads(state);
+            if !(loads.deceleration.is_finite() && loads.load_factor.is_finite()) {
+                faults.push(Fault::InfiniteAcceleration);
+            }
+        }
+        if !faults.is_empty() {
+            return Err(ScenarioError(faults));
+        }
+        let on_stop_altitude = (altitude <= case.stop.altitude + ON_STOP_ALTITUDE).then(|| case.heading());
+        Ok(Self { case, on_stop_altitude })
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// Whether the flight ends where it starts: on the stop altitude, and not rising.
+    pub fn ends_at_start(&self) -> bool {
+        self.on_stop_altitude == Some(Heading::Down)
+    }
+}
+
+impl Case {
+    /// What acts on the vehicle.
+    pub fn forces(&self) -> Forces {
+        let Self { planet, atmosphere, vehicle, bank_angle, .. } = *self;
+        Forces { planet, atmosphere, vehicle, sin_cos_bank: bank_angle.sin_cos() }
+    }
+
+    /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
+    fn heading(&self) -> Heading {
+        let PlanetFixed { position, velocity } = &self.initial_state;
+        let acceleration = self.forces().acceleration(&self.initial_state);
+        let moving = nalgebra::Vector3::from_fn(|i, _| Dual2_64::new(position[i], velocity[i], acceleration[i]));
+        let altitude = self.planet.shape.altitude(&moving);
+        let level = 16.0 * f64::EPSILON * velocity.norm();
+        let rate = if altitude.v1.abs() > level { altitude.v1 } else { altitude.v2 };
+        if velocity.norm() > 0.0 && rate > 0.0 { Heading::Up } else { Heading::Down }
+    }
+}
+
+/// What is wrong with a planet, and with a stop altitude on it.
+pub fn planet_faults(planet: &Planet, stop: &Stop) -> Vec<Fault> {
+    let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
+    let ratio = polar_radius / equatorial_radius;
+    let mut faults = Vec::new();
+    if !(0.1..=10.0).contains(&ratio) {
+        faults.push(Fault::OddShape { ratio });
+    }
+    let minimum = -equatorial_radius.min(polar_radius);
+    if stop.altitude <= minimum {
+        faults.push(Fault::StopBelowCentre { altitude: stop.altitude, minimum });
+    }
+    faults
+}
+
+/// What is wrong with a state by itself: it must be away from the centre, within the bounds of radius and speed.
+pub fn state_faults(state: &PlanetFixed<f64>) -> Vec<Fault> {
+    let (distance, speed) = (state.position.norm(), state.velocity.norm());
+    // A norm may exceed the number from which its vector was made by a rounding.
+    let within = |bound: Bound, norm: f64| norm <= bound.maximum * (1.0 + 1e-12);
+    let mut faults = Vec::new();
+    if distance == 0.0 {
+        faults.push(Fault::AtCentre);
+    }
+    if !within(Bound::RADIUS, distance) {
+        faults.push(Fault::TooFar { distance });
+    }
+    if !within(Bound::SPEED, speed) {
+        faults.push(Fault::TooFast { speed });
+    }
+    faults
+}
+
+fn out_of_bounds(case: &Case) -> Vec<Fault> {
+    let Case { planet, atmosphere, vehicle, bank_angle, stop, solver, .. } = case;
+    let Atmosphere::Exponential { surface_density, scale_height } = *atmosphere;
+    let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = vehicle.aerodynamics;
+    let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
+    let checks = [
+        ("planet.gravitational_parameter", planet.gravitational_parameter, Bound::GRAVITATIONAL_PARAMETER),
+        ("planet.equatorial_radius", equatorial_radius, Bound::RADIUS),
+        ("planet.polar_radius", polar_radius, Bound::RADIUS),
+        ("planet.rotation_rate", planet.rotation_rate, Bound::ROTATION_RATE),
+        ("atmosphere.surface_density", surface_density, Bound::NON_NEGATIVE),
+        ("atmosphere.scale_height", scale_height, Bound::POSITIVE),
+        ("vehicle.mass", vehicle.mass, Bound::POSITIVE),
+        ("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE),
+        ("vehicle.aerodynamics.lift_coefficient", lift_coefficient, Bound::FINITE),
+        ("vehicle.aerodynamics.drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
+        ("control.bank_angle", *bank_angle, Bound::TURN),
+        ("stop.altitude", stop.altitude, Bound::DISTANCE),
+        ("stop.time", stop.time, Bound::STOP_TIME),
+        ("solver.relative_tolerance", solver.relative_tolerance, Bound::RELATIVE_TOLERANCE),
+    ];
+    let fault = |(field, value, bound): (&'static str, f64, Bound)| {
+        (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound })
+    };
+    checks.into_iter().filter_map(fault).collect()
+}

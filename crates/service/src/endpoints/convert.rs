@@ -1,0 +1,39 @@
+//! `POST /convert`: a state in every coordinate system.
+
+use axum::extract::State;
+use axum::http::header;
+use axum::http::request::Parts;
+use axum::response::{IntoResponse, Response};
+
+use crate::error::ApiError;
+use crate::extract::Payload;
+use crate::format::Format;
+use crate::state::AppState;
+use crate::wire::convert::{ConvertRequest, ConvertResponse};
+use crate::wire::reader;
+
+/// Writes a state in every coordinate system.
+///
+/// Each representation in the answer is itself a complete `initial_state`.
+///
+/// # Errors
+/// Every failure is a problem document (RFC 9457).
+#[utoipa::path(
+    post,
+    path = "/convert",
+    tag = "reentry",
+    params(("format" = Option<String>, Query, description = "`json`.")),
+    request_body = ConvertRequest,
+    responses((status = 200, description = "The state in every coordinate system.", body = ConvertResponse)),
+)]
+pub async fn convert(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
+    let format = Format::negotiate(&parts, &[Format::Json])?;
+    let body = app
+        .compute
+        .run(move |_| {
+            let response = ConvertResponse::try_from_tree(reader::parse(&body)?).map_err(ApiError::Invalid)?;
+            Ok(serde_json::to_vec(&response)?)
+        })
+        .await?;
+    Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
+}

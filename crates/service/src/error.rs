@@ -1,0 +1,169 @@
+//! Every way in which a request fails: the one table from faults to status and problem document.
+
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use reentry::simulate::SimulationError;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use crate::wire::reader::Fault;
+
+/// What went wrong with a request.
+#[derive(Debug, thiserror::Error)]
+pub enum ApiError {
+    /// The body is not JSON.
+    #[error("the body is not JSON: {0}")]
+    NotJson(#[from] serde_json::Error),
+    /// The query string has something that it should not have.
+    #[error("{0}")]
+    BadQuery(String),
+    /// The body ended early.
+    #[error("the body could not be read: {0}")]
+    UnreadableBody(String),
+    /// There is nothing at this path.
+    #[error("there is nothing at {0}; see /docs")]
+    NotFound(String),
+    /// The path does not know the method.
+    #[error("{0} does not answer to this method; see /docs")]
+    MethodNotAllowed(String),
+    /// None of the representations that the client accepts.
+    #[error("this answer comes as {offered}; {asked} was asked for")]
+    NotAcceptable {
+        /// What there is.
+        offered: String,
+        /// What was asked for.
+        asked: String,
+    },
+    /// The body is too long.
+    #[error("the body is longer than the {limit} bytes allowed")]
+    PayloadTooLarge {
+        /// The limit, bytes.
+        limit: usize,
+    },
+    /// The body is not declared as JSON.
+    #[error(
+        "the body must be declared as application/json, not as {0}; with curl: -H 'content-type: application/json'"
+    )]
+    UnsupportedMediaType(String),
+    /// The request is JSON, but not a valid case.
+    #[error("the request has {} {}", .0.len(), if .0.len() == 1 { "fault" } else { "faults" })]
+    Invalid(Vec<Fault>),
+    /// More rows than allowed.
+    #[error("the trajectory would have more than the {limit} rows allowed")]
+    TooManyRows {
+        /// The limit.
+        limit: usize,
+        /// The field that asks for them.
+        pointer: &'static str,
+    },
+    /// The flight cannot be finished.
+    #[error("the flight cannot be finished: {0}")]
+    Flight(#[from] SimulationError),
+    /// All workers are busy and the queue is full.
+    #[error("the service is busy; try again in a second")]
+    Busy,
+    /// The time allowed ran out.
+    #[error("the request took longer than the {seconds} s allowed")]
+    DeadlineExceeded {
+        /// The time allowed, s.
+        seconds: f64,
+    },
+    /// A fault of the service.
+    #[error("the service failed on this request; its x-request-id finds it in the log")]
+    Internal,
+}
+
+/// A problem document (RFC 9457).
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Problem {
+    /// The kind of problem: a path that stays the same.
+    #[serde(rename = "type")]
+    kind: &'static str,
+    /// The kind of problem, for people.
+    title: &'static str,
+    /// The HTTP status.
+    status: u16,
+    /// This problem, for people.
+    detail: String,
+    /// The fields that are at fault.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    errors: Vec<FieldError>,
+}
+
+/// What is wrong with one field.
+#[derive(Debug, Serialize, ToSchema)]
+struct FieldError {
+    /// The field, as a JSON pointer (RFC 6901).
+    pointer: String,
+    /// What is wrong, and what would be right.
+    detail: String,
+}
+
+impl ApiError {
+    /// The one table: status, type and title.
+    fn class(&self) -> (StatusCode, &'static str, &'static str) {
+        use SimulationError::{Interrupted, Overflow, Singularity, StepLimit, TooStiff};
+        use StatusCode as Status;
+        match self {
+            Self::NotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
+            Self::BadQuery(_) => (Status::BAD_REQUEST, "/problems/invalid-query", "Invalid query string"),
+            Self::UnreadableBody(_) => (Status::BAD_REQUEST, "/problems/unreadable-body", "Unreadable body"),
+            Self::NotFound(_) => (Status::NOT_FOUND, "/problems/not-found", "Not found"),
+            Self::MethodNotAllowed(_) => {
+                (Status::METHOD_NOT_ALLOWED, "/problems/method-not-allowed", "Method not allowed")
+            }
+            Self::NotAcceptable { .. } => (Status::NOT_ACCEPTABLE, "/problems/not-acceptable", "Not acceptable"),
+            Self::PayloadTooLarge { .. } => {
+                (Status::PAYLOAD_TOO_LARGE, "/problems/payload-too-large", "Payload too large")
+            }
+            Self::UnsupportedMediaType(_) => {
+                (Status::UNSUPPORTED_MEDIA_TYPE, "/problems/unsupported-media-type", "Unsupported media type")
+            }
+            Self::Invalid(_) => (Status::UNPROCESSABLE_ENTITY, "/problems/invalid-case", "Not a valid case"),
+            Self::TooManyRows { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows"),
+            Self::Flight(flight) => match flight {
+                StepLimit { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-limit", "Too many steps"),
+                Singularity { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/singularity", "Singular equations"),
+                TooStiff { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-size", "Too stiff to integrate"),
+                Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
+                Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
+            },
+            Self::Busy => (Status::SERVICE_UNAVAILABLE, "/problems/busy", "Busy"),
+            Self::DeadlineExceeded { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
+            Self::Internal => (Status::INTERNAL_SERVER_ERROR, "/problems/internal", "Internal error"),
+        }
+    }
+
+    /// The fields at fault.
+    fn fields(&self) -> Vec<FieldError> {
+        let one = |pointer: &str, detail: String| vec![FieldError { pointer: pointer.to_owned(), detail }];
+        match self {
+            Self::Invalid(faults) => faults
+                .iter()
+                .map(|Fault { pointer, detail }| FieldError { pointer: pointer.clone(), detail: detail.clone() })
+                .collect(),
+            Self::TooManyRows { limit, pointer } => one(
+                pointer,
+                format!("would give more than the {limit} rows allowed; ask for fewer, for example with count"),
+            ),
+            Self::Flight(SimulationError::Singularity { .. }) => {
+                one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl IntoResponse for ApiError {
+    fn into_response(self) -> Response {
+        let (status, kind, title) = self.class();
+        let problem = Problem { kind, title, status: status.as_u16(), detail: self.to_string(), errors: self.fields() };
+        let body = serde_json::to_vec(&problem).unwrap_or_default();
+        let mut response = (status, [(header::CONTENT_TYPE, "application/problem+json")], body).into_response();
+        if status == StatusCode::SERVICE_UNAVAILABLE {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static("1"));
+        }
+        response
+    }
+}

@@ -1,0 +1,40 @@
+//! The body of a request: declared as JSON, complete, and not too long.
+
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{FromRequest, Request};
+use axum::http::{StatusCode, header};
+
+use crate::error::ApiError;
+use crate::state::AppState;
+
+/// The bytes of a body that is declared as JSON.
+#[derive(Debug)]
+pub struct Payload(pub Bytes);
+
+impl FromRequest<AppState> for Payload {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
+        let declared = request.headers().get(header::CONTENT_TYPE);
+        let media_type = declared.map_or(Ok("nothing"), |value| value.to_str()).unwrap_or("an unreadable type");
+        if !is_json(media_type) {
+            return Err(ApiError::UnsupportedMediaType(media_type.to_owned()));
+        }
+        Bytes::from_request(request, state).await.map(Self).map_err(|rejection| unreadable(&rejection, state))
+    }
+}
+
+/// `application/json` or a type built on it, with any parameters.
+fn is_json(media_type: &str) -> bool {
+    let essence = media_type.split(';').next().unwrap_or_default().trim().to_ascii_lowercase();
+    essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json"))
+}
+
+fn unreadable(rejection: &BytesRejection, state: &AppState) -> ApiError {
+    if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
+        ApiError::PayloadTooLarge { limit: state.config.body_limit }
+    } else {
+        ApiError::UnreadableBody(rejection.body_text())
+    }
+}

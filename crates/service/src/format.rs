@@ -1,0 +1,96 @@
+//! The representation of an answer, chosen by `?format=` or, without it, by `Accept`.
+
+use axum::extract::Query;
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
+
+use crate::error::ApiError;
+
+/// A representation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// `application/json`.
+    Json,
+    /// `text/csv`, the trajectory alone.
+    Csv,
+}
+
+impl Format {
+    /// The name in `?format=`.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Json => "json",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// The media type.
+    pub fn media_type(self) -> &'static str {
+        match self {
+            Self::Json => "application/json",
+            Self::Csv => "text/csv; charset=utf-8; header=present",
+        }
+    }
+
+    /// The one of the offered formats that the request asks for; the first where it does not care.
+    ///
+    /// # Errors
+    /// When the request accepts none of them, or its query string has anything but `format`.
+    pub fn negotiate(parts: &Parts, offered: &[Self]) -> Result<Self, ApiError> {
+        let not_acceptable = |asked: &str| ApiError::NotAcceptable {
+            offered: offered.iter().map(|format| format.name()).collect::<Vec<_>>().join(" or "),
+            asked: asked.to_owned(),
+        };
+        let Query(query) = Query::<Vec<(String, String)>>::try_from_uri(&parts.uri)
+            .map_err(|rejection| ApiError::BadQuery(rejection.body_text()))?;
+        match &query[..] {
+            [] => accepted(&parts.headers, offered).ok_or_else(|| {
+                let accept = parts.headers.get(header::ACCEPT).and_then(|value| value.to_str().ok());
+                not_acceptable(accept.unwrap_or("something unreadable"))
+            }),
+            [(name, value)] if name == "format" => {
+                offered.iter().copied().find(|format| format.name() == value).ok_or_else(|| not_acceptable(value))
+            }
+            _ => Err(ApiError::BadQuery("the query string may have one parameter, format".to_owned())),
+        }
+    }
+}
+
+/// The offered format of the greatest quality in `Accept` (RFC 9110, section 12.5.1).
+fn accepted(headers: &HeaderMap, offered: &[Format]) -> Option<Format> {
+    let accept: Vec<_> = headers.get_all(header::ACCEPT).iter().map(|value| value.to_str().unwrap_or("")).collect();
+    if accept.is_empty() {
+        return offered.first().copied();
+    }
+    let accept = accept.join(",");
+    let mut best = None;
+    for format in offered {
+        let quality = quality(&accept, format.media_type());
+        if quality > best.map_or(0.0, |(greatest, _)| greatest) {
+            best = Some((quality, *format));
+        }
+    }
+    best.map(|(_, format)| format)
+}
+
+/// The quality that `Accept` gives to a media type: that of its most specific range.
+fn quality(accept: &str, media_type: &str) -> f64 {
+    let essence = media_type.split(';').next().unwrap_or_default();
+    let family = essence.split('/').next().unwrap_or_default();
+    let mut found = (0, 0.0);
+    for range in accept.split(',') {
+        let mut parameters = range.split(';').map(str::trim);
+        let specificity = match parameters.next().unwrap_or_default().to_ascii_lowercase() {
+            range if range == essence => 3,
+            range if range.strip_suffix("/*") == Some(family) => 2,
+            range if range == "*/*" => 1,
+            _ => continue,
+        };
+        let weight = parameters.find_map(|parameter| parameter.strip_prefix("q="));
+        let quality = weight.map_or(1.0, |weight| weight.parse().unwrap_or(0.0));
+        if specificity > found.0 {
+            found = (specificity, quality);
+        }
+    }
+    found.1
+}

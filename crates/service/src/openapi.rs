@@ -1,0 +1,167 @@
+//! The OpenAPI document: what utoipa derives from the types, made as strict as the service is.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Map, Value, json};
+use utoipa::OpenApi;
+
+use crate::error::Problem;
+
+/// The frame of the document; the router adds the paths.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "reentry",
+        description = "Flies vehicles back through the atmosphere. SI units; angles in `angle_unit`; an unknown field is an error.",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0"),
+    ),
+    tags(
+        (name = "reentry", description = "Flights and conversions."),
+        (name = "health", description = "For those who watch the service."),
+    ),
+    components(schemas(Problem)),
+)]
+pub struct Document;
+
+/// Fields of which exactly one is given.
+const ALTERNATIVES: [(&str, &[&str]); 3] = [
+    ("PlanetRelative", &["radius", "altitude"]),
+    ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),
+    ("Output", &["samples_per_step", "interval", "count", "times", "trajectory"]),
+];
+
+/// Every failure that every endpoint may answer with.
+const FAILURES: [(&str, &str); 10] = [
+    ("400", "Not JSON, duplicate keys, or an unknown query parameter."),
+    ("404", "There is nothing at this path."),
+    ("405", "The path does not know this method."),
+    ("406", "None of the representations that the client accepts."),
+    ("413", "The body is too long."),
+    ("415", "The body is not declared as JSON."),
+    ("422", "Not a valid case, or a flight that cannot be finished; every fault with its pointer."),
+    ("500", "A fault of the service."),
+    ("503", "Busy; `Retry-After` says when to come back."),
+    ("504", "The time allowed ran out."),
+];
+
+/// The document that the service gives and that is committed as `openapi/openapi.json`.
+pub fn document() -> Value {
+    let (_, api) = crate::router::routes().split_for_parts();
+    let mut document = serde_json::to_value(api).unwrap_or_default();
+    let requests = request_schemas(&document);
+    if let Some(schemas) = document.pointer_mut("/components/schemas").and_then(Value::as_object_mut) {
+        tag_variants(schemas);
+        for name in &requests {
+            if let Some(schema) = schemas.get_mut(name).and_then(Value::as_object_mut) {
+                close(name, schema);
+            }
+        }
+    }
+    if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
+        for path in ["/simulate", "/convert"] {
+            if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
+                add_failures(operation);
+            }
+        }
+        add_examples(paths);
+    }
+    document
+}
+
+/// The names of all schemas that a request body reaches.
+fn request_schemas(document: &Value) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    let mut open: Vec<&Value> = Vec::new();
+    for path in document["paths"].as_object().into_iter().flat_map(Map::values) {
+        open.push(&path["post"]["requestBody"]);
+    }
+    while let Some(value) = open.pop() {
+        match value {
+            Value::Object(map) => {
+                if let Some(name) = map.get("$ref").and_then(Value::as_str).and_then(|path| path.rsplit('/').next())
+                    && found.insert(name.to_owned())
+                {
+                    open.push(&document["components"]["schemas"][name]);
+                }
+                open.extend(map.values());
+            }
+            Value::Array(array) => open.extend(array),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Fixes the `type` of every variant to the name under which the union lists it.
+fn tag_variants(schemas: &mut Map<String, Value>) {
+    let mappings: Vec<_> =
+        schemas.values().filter_map(|schema| schema["discriminator"]["mapping"].as_object()).collect();
+    let tags: Vec<(String, String)> = mappings
+        .into_iter()
+        .flatten()
+        .filter_map(|(tag, path)| Some((path.as_str()?.rsplit('/').next()?.to_owned(), tag.clone())))
+        .collect();
+    for (variant, tag) in tags {
+        if let Some(kind) = schemas.get_mut(&variant).and_then(|variant| variant.pointer_mut("/properties/type")) {
+            kind["enum"] = json!([tag]);
+        }
+    }
+}
+
+/// Makes an object of a request refuse unknown fields and null, and ask for exactly one of its alternatives.
+fn close(name: &str, schema: &mut Map<String, Value>) {
+    let Some(properties) = schema.get_mut("properties").and_then(Value::as_object_mut) else { return };
+    for property in properties.values_mut() {
+        if let Some(types) = property.get("type").and_then(Value::as_array) {
+            let kind = types.iter().find(|kind| *kind != "null").cloned();
+            property["type"] = kind.unwrap_or_default();
+        }
+        if let Some(variants) = property.get_mut("oneOf").and_then(Value::as_array_mut) {
+            variants.retain(|variant| variant["type"] != "null");
+        }
+        if property["type"] == "array" && (name == "Ecef" || name == "Eci") {
+            property["minItems"] = json!(3);
+            property["maxItems"] = json!(3);
+        }
+    }
+    schema.insert("additionalProperties".to_owned(), json!(false));
+    if let Some((_, alternatives)) = ALTERNATIVES.iter().find(|(of, _)| *of == name) {
+        let one = |field: &&str| json!({"required": [field]});
+        schema.insert("oneOf".to_owned(), alternatives.iter().map(one).collect());
+    }
+    if name == "Planet" {
+        let numbers = ["gravitational_parameter", "equatorial_radius", "polar_radius", "rotation_rate"];
+        let absent: Map<_, _> = numbers.iter().map(|name| ((*name).to_owned(), json!(false))).collect();
+        let custom = json!({"properties": {"model": {"const": "custom"}}, "required": ["model"]});
+        schema.insert("if".to_owned(), custom);
+        schema.insert("then".to_owned(), json!({"required": numbers}));
+        schema.insert("else".to_owned(), json!({"properties": absent}));
+    }
+}
+
+fn add_failures(operation: &mut Value) {
+    for (status, description) in FAILURES {
+        operation["responses"][status] = json!({
+            "description": description,
+            "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
+        });
+    }
+}
+
+fn add_examples(paths: &mut Map<String, Value>) {
+    let example = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
+    let simulate = json!({
+        "target_1": {"summary": "TARGET case 1: a fast ballistic projectile, from orbital elements",
+            "value": example(include_str!("../../../openapi/examples/target_1.json"))},
+        "target_2": {"summary": "TARGET case 2: a banked, lifting vehicle",
+            "value": example(include_str!("../../../openapi/examples/target_2.json"))},
+        "impulse": {"summary": "IMPULSE: a missile's vehicle after burnout, from inertial vectors",
+            "value": example(include_str!("../../../openapi/examples/impulse.json"))},
+    });
+    let convert = json!({
+        "impulse": {"summary": "The burnout state of IMPULSE", "value": example(include_str!("../../../openapi/examples/impulse_state.json"))},
+    });
+    for (path, examples) in [("/simulate", simulate), ("/convert", convert)] {
+        paths[path]["post"]["requestBody"]["content"]["application/json"]["examples"] = examples;
+    }
+}

@@ -1,0 +1,56 @@
+//! Every route.
+
+use axum::extract::{DefaultBodyLimit, OriginalUri};
+use axum::http::{Method, header};
+use axum::routing::get;
+use axum::{Json, Router, middleware};
+use tower_http::CompressionLevel;
+use tower_http::compression::CompressionLayer;
+use tower_http::compression::predicate::SizeAbove;
+use tower_http::cors::{Any, CorsLayer};
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use utoipa_swagger_ui::{Config as DocsConfig, SwaggerUi};
+
+use crate::endpoints::{convert, health, home, simulate};
+use crate::error::ApiError;
+use crate::middleware::{REQUEST_ID, observe};
+use crate::openapi::{self, Document};
+use crate::state::AppState;
+
+/// The routes of the OpenAPI document.
+pub fn routes() -> OpenApiRouter<AppState> {
+    OpenApiRouter::with_openapi(Document::openapi())
+        .routes(routes!(simulate::simulate))
+        .routes(routes!(convert::convert))
+        .routes(routes!(health::live))
+        .routes(routes!(health::ready))
+}
+
+/// The whole service.
+pub fn app(state: AppState) -> Router {
+    let (api, _) = routes().split_for_parts();
+    let document = openapi::document();
+    let docs = SwaggerUi::new("/docs").config(DocsConfig::from("/openapi.json"));
+    let compression = CompressionLayer::new()
+        .quality(CompressionLevel::Fastest)
+        .compress_when(SizeAbove::new(state.config.compress_above));
+    let cors = CorsLayer::new()
+        .allow_origin(Any)
+        .allow_methods([Method::GET, Method::POST])
+        .allow_headers([header::CONTENT_TYPE, header::ACCEPT, REQUEST_ID])
+        .expose_headers([REQUEST_ID, header::RETRY_AFTER]);
+    api.route("/", get(home::home))
+        .route("/openapi.json", get(move || std::future::ready(Json(document.clone()))))
+        .merge(docs)
+        .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })
+        .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
+            ApiError::MethodNotAllowed(uri.path().to_owned())
+        })
+        .layer(DefaultBodyLimit::max(state.config.body_limit))
+        .layer(compression)
+        .layer(cors)
+        .layer(middleware::from_fn(observe))
+        .with_state(state)
+}

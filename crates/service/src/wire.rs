@@ -1,0 +1,53 @@
+//! The JSON of the API and its translation to and from the core; angles and calendars are converted here and nowhere else.
+//!
+//! A request is parsed to a tree ([`reader::parse`]), read into the types of this module with every fault noted
+//! ([`reader::read`]), and translated to a core type, whose own checks see what concerns several fields.
+
+pub mod convert;
+pub mod epoch;
+pub mod reader;
+pub mod scenario;
+pub mod state;
+pub mod trajectory;
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// The unit of every angle of a request and of its answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AngleUnit {
+    /// Radians.
+    #[default]
+    Rad,
+    /// Degrees.
+    Deg,
+}
+
+impl AngleUnit {
+    const NAMES: [(&'static str, Self); 2] = [("rad", Self::Rad), ("deg", Self::Deg)];
+
+    /// An angle of the request, in radians.
+    pub fn to_radians(self, angle: f64) -> f64 {
+        match self {
+            Self::Rad => angle,
+            Self::Deg => angle.to_radians(),
+        }
+    }
+
+    /// An angle in radians, as the answer gives it.
+    pub fn from_radians(self, angle: f64) -> f64 {
+        match self {
+            Self::Rad => angle,
+            Self::Deg => angle.to_degrees(),
+        }
+    }
+
+    /// An angle in [0, 2π) radians, as the answer gives it: rounding must not carry it to a full turn.
+    pub fn turn_from_radians(self, angle: f64) -> f64 {
+        match self {
+            Self::Deg if angle.to_degrees() >= 360.0 => 0.0,
+            _ => self.from_radians(angle),
+        }
+    }
+}

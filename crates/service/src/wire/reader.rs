@@ -1,0 +1,424 @@
+//! Reads a JSON tree field by field, notes every fault with its pointer, and fills in defaults.
+
+use std::fmt;
+
+use reentry::scenario::Bound;
+use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value, json};
+
+use super::AngleUnit;
+
+/// Something wrong with one field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The field, as a JSON pointer (RFC 6901).
+    pub pointer: String,
+    /// What is wrong, and what would be right.
+    pub detail: String,
+}
+
+impl Fault {
+    /// A fault of the field at the pointer.
+    pub fn new(pointer: impl Into<String>, detail: impl Into<String>) -> Self {
+        Self { pointer: pointer.into(), detail: detail.into() }
+    }
+}
+
+/// The tree of a JSON text. A key that occurs twice in an object is an error, as is a number that no `f64` holds.
+///
+/// # Errors
+/// With the line and column at which the text stops being JSON.
+pub fn parse(text: &[u8]) -> Result<Value, serde_json::Error> {
+    let mut deserializer = serde_json::Deserializer::from_slice(text);
+    let value = Tree.deserialize(&mut deserializer)?;
+    deserializer.end()?;
+    Ok(value)
+}
+
+/// Reads a whole request, an object, with the given function; the tree then holds every default as well.
+///
+/// # Errors
+/// With every fault that was found.
+pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut Object) -> Option<T>) -> Result<T, Vec<Fault>> {
+    let mut context = Context { faults: Vec::new(), unit: None };
+    let result = object(tree, String::new(), &mut context, read);
+    match result {
+        Some(request) if context.faults.is_empty() => Ok(request),
+        _ => Err(context.faults),
+    }
+}
+
+/// What all objects of a request share.
+struct Context {
+    faults: Vec<Fault>,
+    /// None where the request's own unit is faulty: the range of an angle is then unknown.
+    unit: Option<AngleUnit>,
+}
+
+/// An object of the request, being read. Every method that finds a fault notes it and returns `None`.
+pub struct Object<'a> {
+    map: &'a mut Map<String, Value>,
+    pointer: String,
+    known: Vec<&'static str>,
+    kind_unknown: bool,
+    context: &'a mut Context,
+}
+
+fn object<T>(
+    value: &mut Value,
+    pointer: String,
+    context: &mut Context,
+    read: impl FnOnce(&mut Object) -> Option<T>,
+) -> Option<T> {
+    let kind = kind_of(value);
+    let Value::Object(map) = value else {
+        context.faults.push(Fault::new(pointer, format!("must be an object, got {kind}")));
+        return None;
+    };
+    let mut object = Object { map, pointer, known: Vec::new(), kind_unknown: false, context };
+    let result = read(&mut object);
+    object.refuse_unknown_fields();
+    result
+}
+
+impl Object<'_> {
+    /// Notes a fault of this object as a whole.
+    pub fn fault<T>(&mut self, detail: impl Into<String>) -> Option<T> {
+        self.context.faults.push(Fault::new(self.pointer.clone(), detail));
+        None
+    }
+
+    /// Whether the request gives the field.
+    pub fn has(&mut self, name: &'static str) -> bool {
+        self.known.push(name);
+        self.map.contains_key(name)
+    }
+
+    /// Notes a fault unless exactly one of the fields is given, which it returns.
+    pub fn exactly_one(&mut self, names: &[&'static str]) -> Option<&'static str> {
+        let given: Vec<_> = names.iter().copied().filter(|name| self.has(name)).collect();
+        if let [name] = given[..] {
+            return Some(name);
+        }
+        let got = if given.is_empty() { "none of them".to_owned() } else { given.join(" and ") };
+        self.fault(format!("must have exactly one of {}, got {got}", names.join(", ")))
+    }
+
+    /// A number that may be left out.
+    pub fn optional_number(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
+        if self.has(name) { self.number(name, bound) } else { None }
+    }
+
+    /// A number that must be given.
+    pub fn number(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
+        let number = bounded(self.required(name)?, bound);
+        self.check(name, number, Ok)
+    }
+
+    /// A number with a default.
+    pub fn number_or(&mut self, name: &'static str, bound: Bound, default: f64) -> Option<f64> {
+        self.fill(name, json!(default));
+        self.number(name, bound)
+    }
+
+    /// An angle that must be given, in the request's unit; the bound is in radians.
+    pub fn angle(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
+        let unit = self.context.unit;
+        let angle = bounded_angle(self.required(name)?, bound, unit);
+        self.check(name, angle, Ok)
+    }
+
+    /// An angle with a default.
+    pub fn angle_or(&mut self, name: &'static str, bound: Bound, default: f64) -> Option<f64> {
+        self.fill(name, json!(default));
+        self.angle(name, bound)
+    }
+
+    /// A whole number from `least` on.
+    pub fn whole_number(&mut self, name: &'static str, least: usize) -> Option<usize> {
+        let value = self.required(name)?;
+        let kind = kind_of(value);
+        let shown = value.to_string();
+        let whole = value.as_number().map(|number| whole(number).filter(|whole| *whole >= least));
+        self.check(name, whole.ok_or(format!("must be a whole number, got {kind}")), |whole| {
+            whole.ok_or(format!("must be a whole number of at least {least}, got {shown}"))
+        })
+    }
+
+    /// A vector of three numbers.
+    pub fn vector(&mut self, name: &'static str, bound: Bound) -> Option<[f64; 3]> {
+        let numbers = self.numbers(name, bound)?;
+        let count = numbers.len();
+        let vector = numbers.try_into().map_err(|_| format!("must have 3 numbers, got {count}"));
+        self.check(name, vector, Ok)
+    }
+
+    /// A list of numbers.
+    pub fn numbers(&mut self, name: &'static str, bound: Bound) -> Option<Vec<f64>> {
+        let value = self.required(name)?;
+        let kind = kind_of(value);
+        let Value::Array(elements) = value else {
+            return self.check(name, Err(format!("must be an array of numbers, got {kind}")), Ok);
+        };
+        let read: Vec<_> = elements.iter().map(|element| bounded(element, bound)).collect();
+        let count = read.len();
+        let mut numbers = Vec::with_capacity(count);
+        for (index, element) in read.into_iter().enumerate() {
+            match element {
+                Ok(number) => numbers.push(number),
+                Err(detail) => self.fault_of(&format!("{name}/{index}"), detail),
+            }
+        }
+        (numbers.len() == count).then_some(numbers)
+    }
+
+    /// Notes a fault at every number that is not greater than the one before it.
+    pub fn ascending(&mut self, name: &'static str, numbers: &[f64]) -> bool {
+        let mut sound = true;
+        for (index, pair) in numbers.windows(2).enumerate() {
+            if pair[1] <= pair[0] {
+                let detail = format!("must be greater than the {:?} before it, got {:?}", pair[0], pair[1]);
+                self.fault_of(&format!("{name}/{}", index + 1), detail);
+                sound = false;
+            }
+        }
+        sound
+    }
+
+    /// A string that may be left out.
+    pub fn optional_string(&mut self, name: &'static str) -> Option<String> {
+        if !self.has(name) {
+            return None;
+        }
+        let value = self.required(name)?;
+        let string = value.as_str().map(str::to_owned).ok_or(format!("must be a string, got {}", kind_of(value)));
+        self.check(name, string, Ok)
+    }
+
+    /// Yes or no, with a default.
+    pub fn boolean_or(&mut self, name: &'static str, default: bool) -> Option<bool> {
+        self.fill(name, json!(default));
+        let value = self.required(name)?;
+        let boolean = value.as_bool().ok_or(format!("must be true or false, got {}", kind_of(value)));
+        self.check(name, boolean, Ok)
+    }
+
+    /// One of several names that must be given.
+    pub fn choice<T: Copy>(&mut self, name: &'static str, choices: &[(&str, T)]) -> Option<T> {
+        let names = choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        let expected = format!("must be one of {names}");
+        let Some(value) = self.map.get(name) else {
+            self.known.push(name);
+            self.fault_of(name, format!("is required; it {expected}"));
+            self.kind_unknown |= name == "type";
+            return None;
+        };
+        let string = value.as_str();
+        let chosen = string.and_then(|given| choices.iter().find(|(name, _)| *name == given)).map(|(_, value)| *value);
+        let got = string.map_or_else(|| kind_of(value).to_owned(), |given| format!("{:?}", shortened(given)));
+        self.known.push(name);
+        self.kind_unknown |= chosen.is_none() && (name == "type" || name == "model");
+        self.check(name, chosen.ok_or(format!("{expected}, got {got}")), Ok)
+    }
+
+    /// One of several names, with a default.
+    pub fn choice_or<T: Copy>(&mut self, name: &'static str, choices: &[(&str, T)], default: &str) -> Option<T> {
+        self.fill(name, json!(default));
+        self.choice(name, choices)
+    }
+
+    /// The unit of the request's angles; to be read before any angle.
+    pub fn angle_unit(&mut self) -> Option<AngleUnit> {
+        let unit = self.choice_or("angle_unit", &AngleUnit::NAMES, "rad");
+        self.context.unit = unit;
+        unit
+    }
+
+    /// An object that must be given.
+    pub fn object<T>(&mut self, name: &'static str, read: impl FnOnce(&mut Object) -> Option<T>) -> Option<T> {
+        let pointer = format!("{}/{name}", self.pointer);
+        self.required(name)?;
+        let value = self.map.get_mut(name)?;
+        object(value, pointer, self.context, read)
+    }
+
+    /// An object with a default.
+    pub fn object_or<T>(
+        &mut self,
+        name: &'static str,
+        default: Value,
+        read: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        self.fill(name, default);
+        self.object(name, read)
+    }
+
+    /// Something that has its own reader for a value that must be given.
+    pub fn value<T>(&mut self, name: &'static str, read: impl FnOnce(&Value) -> Result<T, String>) -> Option<T> {
+        let value = read(self.required(name)?);
+        self.check(name, value, Ok)
+    }
+
+    /// Gives a field its default.
+    pub fn fill(&mut self, name: &'static str, default: Value) {
+        if !self.map.contains_key(name) {
+            self.map.insert(name.to_owned(), default);
+        }
+    }
+
+    fn required(&mut self, name: &'static str) -> Option<&Value> {
+        self.known.push(name);
+        if !self.map.contains_key(name) {
+            self.fault_of(name, "is required".to_owned());
+        }
+        self.map.get(name)
+    }
+
+    fn check<T, U>(
+        &mut self,
+        name: &str,
+        value: Result<T, String>,
+        check: impl FnOnce(T) -> Result<U, String>,
+    ) -> Option<U> {
+        match value.and_then(check) {
+            Ok(value) => Some(value),
+            Err(detail) => {
+                self.fault_of(name, detail);
+                None
+            }
+        }
+    }
+
+    /// Notes a fault of the field, or the element of a field, of the given relative pointer.
+    fn fault_of(&mut self, name: &str, detail: String) {
+        self.context.faults.push(Fault::new(format!("{}/{name}", self.pointer), detail));
+    }
+
+    fn refuse_unknown_fields(&mut self) {
+        if self.kind_unknown {
+            return;
+        }
+        let unknown: Vec<_> = self.map.keys().filter(|name| !self.known.contains(&name.as_str())).collect();
+        let mut known = self.known.clone();
+        known.dedup();
+        let known = known.join(", ");
+        for name in unknown {
+            let escaped = name.replace('~', "~0").replace('/', "~1");
+            let pointer = format!("{}/{escaped}", self.pointer);
+            self.context.faults.push(Fault::new(pointer, format!("is not a field here; the fields are {known}")));
+        }
+    }
+}
+
+fn number(value: &Value) -> Result<f64, String> {
+    value.as_f64().ok_or_else(|| format!("must be a number, got {}", kind_of(value)))
+}
+
+fn whole(number: &Number) -> Option<usize> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be whole and in range")]
+    let from_float = |float: f64| (float.fract() == 0.0 && (0.0..1e15).contains(&float)).then_some(float as usize);
+    number.as_u64().and_then(|whole| usize::try_from(whole).ok()).or_else(|| number.as_f64().and_then(from_float))
+}
+
+fn bounded(value: &Value, bound: Bound) -> Result<f64, String> {
+    let number = number(value)?;
+    if bound.admits(number) { Ok(number) } else { Err(format!("must be {bound}, got {value}")) }
+}
+
+fn bounded_angle(value: &Value, bound: Bound, unit: Option<AngleUnit>) -> Result<f64, String> {
+    match unit {
+        None => number(value),
+        Some(AngleUnit::Rad) => {
+            number(value)?;
+            let hint = "were degrees meant? Then send \"angle_unit\": \"deg\"";
+            bounded(value, bound).map_err(|detail| format!("{detail} (radians); {hint}"))
+        }
+        Some(AngleUnit::Deg) => {
+            number(value)?;
+            bounded(value, bound.scaled(1_f64.to_degrees())).map_err(|detail| format!("{detail} (degrees)"))
+        }
+    }
+}
+
+fn kind_of(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "a boolean",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a string",
+        Value::Array(_) => "an array",
+        Value::Object(_) => "an object",
+    }
+}
+
+/// The beginning of a string, for a message.
+fn shortened(string: &str) -> String {
+    let mut start: String = string.chars().take(40).collect();
+    if start.len() < string.len() {
+        start.push('…');
+    }
+    start
+}
+
+/// Builds a [`Value`] and refuses duplicate keys, which [`Value`]'s own reader would drop.
+struct Tree;
+
+impl<'de> DeserializeSeed<'de> for Tree {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Tree {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<Value, E> {
+        Number::from_f64(value).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Value, A::Error> {
+        let mut array = Vec::new();
+        while let Some(element) = elements.next_element_seed(Self)? {
+            array.push(element);
+        }
+        Ok(Value::Array(array))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut map = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            if map.contains_key(&key) {
+                return Err(de::Error::custom(format!("duplicate key {:?}", shortened(&key))));
+            }
+            let value = entries.next_value_seed(Self)?;
+            map.insert(key, value);
+        }
+        Ok(Value::Object(map))
+    }
+}

@@ -1,0 +1,3 @@
+//! What the tests share: the reference cases, and a service to call without a socket.
+
+pub mod service;

@@ -1,0 +1,4 @@
+//! The tests of the project, in one program.
+
+mod http;
+mod reference;
