@@ -10,6 +10,9 @@
 /// using derivatives, Advances in Engineering Software 28 (1997) 145-149.
 pub fn bracketed(mut function: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64)) -> f64 {
     let [(mut x1, mut f1), (mut x2, mut f2)] = [b, a];
+    if f1 == 0.0 || f2 == 0.0 {
+        return if f1 == 0.0 { x1 } else { x2 };
+    }
     let mut part = 0.5;
     for _ in 0..200 {
         let x = x1 + part * (x2 - x1);
