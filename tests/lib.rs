@@ -1,3 +1,4 @@
 //! What the tests share: the reference cases, and a service to call without a socket.
 
+pub mod cases;
 pub mod service;

@@ -1,4 +1,10 @@
 //! The tests of the project, in one program.
 
+mod check;
+mod conversions;
 mod http;
+mod integrator;
+mod pitfalls;
+mod properties;
 mod reference;
+mod tidy;

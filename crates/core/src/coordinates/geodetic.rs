@@ -91,34 +91,31 @@ fn nearest_point((a, b): (f64, f64), (x, y): (f64, f64)) -> (f64, f64, f64) {
         let foot_v = (1.0 - foot_u * foot_u).sqrt();
         return (foot_u / a, foot_v / b, -(foot_u * a - x).hypot(foot_v * b));
     }
-    // The foot is (x / (1 + s/ratio), y / (1 + s)) with the root s of G: with the normal n = (foot_x/a², foot_y/b²)
-    // the point lies s b² |n| above it.
-    let excess = |s: f64| {
-        let [p, q] = [ratio * u / (s + ratio), v / (s + 1.0)];
-        let value = (p - 1.0) * (p + 1.0) + q * q;
-        (value, -2.0 * (p * p / (s + ratio) + q * q / (s + 1.0)))
+    // The foot, in parts of the semi-axes, is (p, q) = (ratio u / (t + ratio - 1), v / t) with the root t of p² + q² = 1.
+    let foot = |t: f64| [ratio * u / (t + (ratio - 1.0)), v / t];
+    let excess = |t: f64| {
+        let [p, q] = foot(t);
+        ((p - 1.0) * (p + 1.0) + q * q, -2.0 * (p * p / (t + (ratio - 1.0)) + q * q / t))
     };
-    let least = v - 1.0;
-    let greatest = (ratio * u).hypot(v) - 1.0;
+    let [mut least, greatest] = [v, (ratio * u).hypot(v)];
+    let mut t = u.hypot(v).clamp(least, greatest);
     // A convex, falling function: Newton's method from the left never passes the root, and from the right jumps to its left once.
-    let mut s = (u.hypot(v) - 1.0).clamp(least, greatest);
-    let mut left = least;
-    for _ in 0..64 {
-        let (value, slope) = excess(s);
-        let next = s - value / slope;
+    for _ in 0..100 {
+        let (value, slope) = excess(t);
         if value > 0.0 {
-            left = left.max(s);
+            least = least.max(t);
         }
-        let next = if next > left { next.min(greatest) } else { 0.5 * (left + s) };
-        let change = next - s;
-        s = next;
-        if change.abs() <= 2.0 * f64::EPSILON * s.abs().max(1.0) * 0.5 {
+        let newton = t - value / slope;
+        let next = if newton > least { newton.min(greatest) } else { 0.5 * (least + t) };
+        let change = (next - t).abs();
+        t = next;
+        if change <= f64::EPSILON * t {
             break;
         }
     }
-    let [foot_u, foot_v] = [ratio * u / (s + ratio), v / (s + 1.0)];
+    let [foot_u, foot_v] = foot(t);
     let normal = (foot_u / a, foot_v / b);
-    // Measured along the normal, the difference from the foot does not feel the rounding of s.
+    // Measured along the normal, the difference from the foot does not feel the rounding of t.
     let height = ((x - foot_u * a) * normal.0 + (y - foot_v * b) * normal.1) / normal.0.hypot(normal.1);
     (normal.0, normal.1, height)
 }
