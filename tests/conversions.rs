@@ -87,8 +87,7 @@ fn elements_agree_with_hapsira() {
 fn undefined_elements_take_the_values_of_the_conventions() {
     let elements = |eccentricity, inclination, raan, argument_of_periapsis, true_anomaly| {
         let shape = OrbitShape::SemiLatusRectum(7e6);
-        let elements =
-            OrbitalElements { shape, eccentricity, inclination, raan, argument_of_periapsis, true_anomaly };
+        let elements = OrbitalElements { shape, eccentricity, inclination, raan, argument_of_periapsis, true_anomaly };
         OrbitalElements::from_inertial(&elements.to_inertial(MU), MU).unwrap().0
     };
     // Circular: the anomaly counts from the node.

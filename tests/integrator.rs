@@ -1,0 +1,293 @@
+//! The method of integration: its order, its dense output, its number types, and its events.
+
+use std::sync::atomic::AtomicBool;
+
+use num_dual::Dual64;
+use reentry::integrate::{IntegrationError, Integrator, Limits, Step, System, event};
+use reentry::motion::{Cartesian, Spherical};
+use reentry::scalar::Scalar;
+
+use crate::check::{near, relative};
+use crate::flights::target_2;
+
+/// The plane Kepler problem with eccentricity 0.5 from periapsis: period 2π, energy -1/2.
+struct Kepler;
+
+impl System<4> for Kepler {
+    fn derivative<S: Scalar>(&self, state: &[S; 4]) -> [S; 4] {
+        let [x, y, vx, vy] = *state;
+        let squared = x * x + y * y;
+        let pull = (squared * squared.sqrt()).recip();
+        [vx, vy, -x * pull, -y * pull]
+    }
+
+    fn magnitudes(&self) -> [f64; 4] {
+        [1.0; 4]
+    }
+}
+
+const PERIAPSIS: [f64; 4] = [0.5, 0.0, 0.0, 1.732_050_807_568_877_2];
+
+/// Where the body of [`Kepler`] is, by Kepler's equation.
+fn kepler_position(time: f64) -> [f64; 2] {
+    let mut anomaly = time;
+    for _ in 0..50 {
+        anomaly -= (anomaly - 0.5 * anomaly.sin() - time) / (1.0 - 0.5 * anomaly.cos());
+    }
+    [anomaly.cos() - 0.5, 0.75_f64.sqrt() * anomaly.sin()]
+}
+
+fn limits(relative_tolerance: f64, interrupt: &AtomicBool) -> Limits<'_> {
+    Limits { relative_tolerance, steps: 10_000, interrupt }
+}
+
+/// One step of a given length, whatever its error.
+fn single_step(length: f64) -> Step<f64, 4> {
+    let interrupt = AtomicBool::new(false);
+    let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-10, &interrupt));
+    let step = integrator.advance(length).unwrap();
+    integrator.shorten(&step, length)
+}
+
+fn distance(state: &[f64; 4], time: f64) -> f64 {
+    let [x, y] = kepler_position(time);
+    (state[0] - x).hypot(state[1] - y)
+}
+
+#[test]
+fn the_error_of_a_step_falls_with_the_ninth_power_of_its_length() {
+    let error = |length: f64| distance(&single_step(length).end, length);
+    let order = (error(0.2) / error(0.1)).log2();
+    assert!((8.5..9.8).contains(&order), "order {order}");
+}
+
+#[test]
+fn the_error_of_the_dense_output_falls_with_the_eighth_power_of_the_step() {
+    let worst = |length: f64| {
+        let step = single_step(length);
+        let errors = (1..20).map(|part| f64::from(part) / 20.0).map(|part| distance(&step.state(part), part * length));
+        errors.fold(0.0, f64::max)
+    };
+    let order = (worst(0.2) / worst(0.1)).log2();
+    assert!((7.5..8.8).contains(&order), "order {order}");
+}
+
+#[test]
+fn the_dense_output_meets_both_ends_and_their_slopes() {
+    let step = single_step(0.3);
+    for i in 0..4 {
+        near("start", step.state(0.0)[i], step.start[i], 0.0);
+        near("end", step.state(1.0)[i], step.end[i], 1e-15);
+        let slope = |part: f64| (step.state(part + 1e-6)[i] - step.state(part - 1e-6)[i]) / (2e-6 * 0.3);
+        near("slope at the start", slope(0.0), step.start_derivative[i], 1e-8);
+        near("slope at the end", slope(1.0), step.end_derivative[i], 1e-8);
+    }
+}
+
+#[test]
+fn the_global_error_follows_the_tolerance() {
+    let interrupt = AtomicBool::new(false);
+    let mut before = f64::INFINITY;
+    for exponent in [-4, -6, -8, -10, -12] {
+        let tolerance = 10_f64.powi(exponent);
+        let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(tolerance, &interrupt));
+        let mut last = PERIAPSIS;
+        let mut time = 0.0;
+        while time < 20.0 {
+            let step = integrator.advance(20.0).unwrap();
+            (time, last) = (step.end_time, step.end);
+        }
+        near("the end", time, 20.0, 0.0);
+        let error = distance(&last, 20.0);
+        // Three revolutions, in which errors along the orbit grow: a thousand tolerances at most, and falling with them.
+        assert!(error < 1e3 * tolerance && error < before, "{error:e} at {tolerance:e} after {before:e}");
+        before = error;
+    }
+}
+
+#[test]
+fn evaluations_are_counted() {
+    use std::cell::Cell;
+    struct Counting(Cell<usize>);
+    impl System<1> for Counting {
+        fn derivative<S: Scalar>(&self, state: &[S; 1]) -> [S; 1] {
+            self.0.set(self.0.get() + 1);
+            [-state[0] * state[0]]
+        }
+        fn magnitudes(&self) -> [f64; 1] {
+            [1.0]
+        }
+    }
+    let interrupt = AtomicBool::new(false);
+    let system = Counting(Cell::new(0));
+    let mut integrator = Integrator::new(&system, [1.0], limits(1e-12, &interrupt));
+    for _ in 0..5 {
+        let step = integrator.advance(100.0).unwrap();
+        integrator.shorten(&step, step.time(0.5));
+    }
+    assert_eq!(integrator.statistics().evaluations, system.0.get());
+}
+
+#[test]
+fn a_step_that_is_not_finite_is_rejected() {
+    /// Falls to the edge of what it is defined on: y = (1 - t)², not a number beyond y = 0.
+    struct Edge;
+    impl System<1> for Edge {
+        fn derivative<S: Scalar>(&self, state: &[S; 1]) -> [S; 1] {
+            [state[0].sqrt() * -2.0]
+        }
+        fn magnitudes(&self) -> [f64; 1] {
+            [1.0]
+        }
+    }
+    let interrupt = AtomicBool::new(false);
+    let mut integrator = Integrator::new(&Edge, [1.0], limits(1e-6, &interrupt));
+    let mut time = 0.0;
+    while time < 0.999 {
+        let step = integrator.advance(0.999).unwrap();
+        time = step.end_time;
+        near("y", step.end[0], (1.0 - time) * (1.0 - time), 1e-5);
+    }
+    // Beyond the edge there is nothing to step to.
+    let error = loop {
+        match integrator.advance(2.0) {
+            Ok(step) => assert!(step.end[0].is_finite() && step.end_time < 1.0 + 1e-3),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, IntegrationError::StepTooSmall { .. } | IntegrationError::StepLimit { .. }), "{error}");
+}
+
+#[test]
+fn a_system_without_a_finite_slope_is_refused() {
+    struct Nowhere;
+    impl System<1> for Nowhere {
+        fn derivative<S: Scalar>(&self, _: &[S; 1]) -> [S; 1] {
+            [S::from(f64::NAN)]
+        }
+        fn magnitudes(&self) -> [f64; 1] {
+            [1.0]
+        }
+    }
+    let interrupt = AtomicBool::new(false);
+    let error = Integrator::new(&Nowhere, [1.0], limits(1e-6, &interrupt)).advance(1.0).unwrap_err();
+    assert_eq!(error, IntegrationError::StepTooSmall { time: 0.0 });
+}
+
+#[test]
+fn the_flag_ends_the_integration_before_the_next_step() {
+    let interrupt = AtomicBool::new(false);
+    let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-6, &interrupt));
+    let step = integrator.advance(100.0).unwrap();
+    interrupt.store(true, std::sync::atomic::Ordering::Relaxed);
+    let error = integrator.advance(100.0).unwrap_err();
+    assert_eq!(error, IntegrationError::Interrupted { time: step.end_time });
+}
+
+/// The derivative in dual numbers: the same digits as in `f64`, and the slopes of central differences.
+fn duals_agree<F: System<6>>(what: &str, motion: &F, state: [f64; 6]) {
+    let plain = motion.derivative(&state);
+    for component in 0..6 {
+        let step = 1e-6 * state[component].abs().max(1.0);
+        let seeded: [Dual64; 6] =
+            std::array::from_fn(|i| Dual64::new(state[i], if i == component { 1.0 } else { 0.0 }));
+        let dual = motion.derivative(&seeded);
+        let at = |offset: f64| {
+            let mut moved = state;
+            moved[component] += offset;
+            motion.derivative(&moved)
+        };
+        let (above, below) = (at(step), at(-step));
+        for i in 0..6 {
+            assert_eq!(dual[i].re.to_bits(), plain[i].to_bits(), "{what}: value {i}");
+            let difference = (above[i] - below[i]) / (2.0 * step);
+            // A central difference has a rounding of 1e-16 of the value over the step.
+            let rounding = 1e-15 * plain[i].abs() / step + 1e-14;
+            near(
+                &format!("{what}: slope {i} by {component}"),
+                dual[i].eps,
+                difference,
+                1e-6 * difference.abs() + rounding,
+            );
+        }
+    }
+}
+
+#[test]
+fn the_derivative_in_dual_numbers_has_the_same_value_and_the_right_slopes() {
+    let case = target_2();
+    // At 20 km, where every force counts.
+    let mut state = reentry::FlightPath::from_planet_fixed(&case.initial_state);
+    state.radius = 6_398_137.0;
+    duals_agree("cartesian", &Cartesian(case.forces()), state.to_planet_fixed().into());
+    duals_agree("spherical", &Spherical(case.forces()), state.into());
+}
+
+#[test]
+fn an_integration_in_dual_numbers_takes_the_steps_of_its_values() {
+    let interrupt = AtomicBool::new(false);
+    let seeded = PERIAPSIS.map(Dual64::from);
+    let speed = Dual64::new(PERIAPSIS[3], 1.0);
+    let mut plain = Integrator::new(&Kepler, PERIAPSIS, limits(1e-10, &interrupt));
+    let mut dual = Integrator::new(&Kepler, [seeded[0], seeded[1], seeded[2], speed], limits(1e-10, &interrupt));
+    let fly = |speed: f64| {
+        let mut integrator = Integrator::new(&Kepler, [0.5, 0.0, 0.0, speed], limits(1e-13, &interrupt));
+        loop {
+            let step = integrator.advance(5.0).unwrap();
+            if step.end_time >= 5.0 {
+                break step.end;
+            }
+        }
+    };
+    let slopes = loop {
+        let (plain, dual) = (plain.advance(5.0).unwrap(), dual.advance(5.0).unwrap());
+        assert_eq!(plain.end_time.to_bits(), dual.end_time.to_bits());
+        assert_eq!(plain.end.map(f64::to_bits), dual.end.map(|x| x.re.to_bits()));
+        if plain.end_time >= 5.0 {
+            break dual.end.map(|x| x.eps);
+        }
+    };
+    let (above, below) = (fly(PERIAPSIS[3] + 1e-5), fly(PERIAPSIS[3] - 1e-5));
+    for i in 0..4 {
+        relative("slope by the initial speed", slopes[i], (above[i] - below[i]) / 2e-5, 1e-6);
+    }
+}
+
+/// A quantity along a step of one second, by its value and rate.
+fn curve(value: fn(Dual64) -> Dual64) -> impl Fn(f64) -> Dual64 {
+    move |part| value(Dual64::new(part, 1.0))
+}
+
+fn first_fall(value: fn(Dual64) -> Dual64) -> Option<f64> {
+    let curve = curve(value);
+    event::first_fall(curve(0.0), curve(1.0), 1.0, &curve)
+}
+
+#[test]
+fn falls_are_found_where_they_first_happen() {
+    let check = |what: &str, found: Option<f64>, expected: Option<f64>| match (found, expected) {
+        (Some(found), Some(expected)) => near(what, found, expected, 1e-12),
+        (found, expected) => assert_eq!(found, expected, "{what}"),
+    };
+    check("a fall through zero", first_fall(|t| -t + 0.3), Some(0.3));
+    check("a rise through zero is none", first_fall(|t| t - 0.3), None);
+    check("a dip below zero", first_fall(|t| (t - 0.6) * (t - 0.6) - 0.01), Some(0.5));
+    check("a short dip in a quarter of the step", first_fall(|t| (t - 0.62) * (t - 0.62) * 100.0 - 0.01), Some(0.61));
+    check("a dip that stays above", first_fall(|t| (t - 0.6) * (t - 0.6) + 0.01), None);
+    check("up, then down through zero", first_fall(|t| t * (-t + 0.7)), Some(0.7));
+    check("from just below, up and down", first_fall(|t| t * (-t + 0.7) - 1e-3), Some((0.7 + 0.486_f64.sqrt()) / 2.0));
+    check("from below, never above", first_fall(|t| t * (-t + 0.7) - 1.0), Some(0.35));
+    check("far from zero", first_fall(|t| t + 7.0), None);
+}
+
+#[test]
+fn maxima_are_found_inside_and_not_at_the_ends() {
+    let maximum = |value: fn(Dual64) -> Dual64| {
+        let curve = curve(value);
+        event::maximum(curve(0.0), curve(1.0), &curve)
+    };
+    near("inside", maximum(|t| -(t - 0.3) * (t - 0.3)).unwrap(), 0.3, 1e-12);
+    assert_eq!(maximum(|t| t), None);
+    assert_eq!(maximum(|t| -t), None);
+    assert_eq!(maximum(|t| (t - 0.3) * (t - 0.3)), None);
+}

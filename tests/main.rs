@@ -2,6 +2,7 @@
 
 mod check;
 mod conversions;
+mod flights;
 mod http;
 mod integrator;
 mod pitfalls;

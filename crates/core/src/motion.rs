@@ -190,7 +190,7 @@ fn lift_fade_over_cosine<S: Scalar>(cos_squared: S) -> S {
     let x = cosine / LIFT_FADE_ANGLE;
     let faded = x * x * (x * (x * 6.0 - 15.0) + 10.0) / LIFT_FADE_ANGLE;
     let in_cone = cosine.less_than(LIFT_FADE_ANGLE);
-    let full = S::one() / S::select(in_cone, S::one(), cosine);
+    let full = S::select(in_cone, S::one(), cosine).recip();
     S::select(in_cone, faded, full)
 }
 

@@ -41,7 +41,7 @@ impl Shape {
                 let ratio = polar_radius / equatorial_radius;
                 let stretched = ((x * x + y * y) * (ratio * ratio) + z * z).sqrt();
                 // r_E = b r / √(z² + (b/a)² (x² + y²))
-                radius - radius / stretched * polar_radius
+                radius - radius * stretched.recip() * polar_radius
             }
         }
     }
@@ -57,7 +57,7 @@ impl Shape {
             Self::Ellipsoid { equatorial_radius, polar_radius } => {
                 let ratio = polar_radius / equatorial_radius;
                 let root = (sin_latitude * sin_latitude + cos_latitude * cos_latitude * (ratio * ratio)).sqrt();
-                S::from(polar_radius) / root
+                root.recip() * polar_radius
             }
         }
     }
@@ -138,6 +138,6 @@ impl Planet {
     /// Jameson 2006, equation 33: g = g₀ (r₀/r)².
     #[inline(always)]
     pub fn gravity<S: Scalar>(&self, radius: S) -> S {
-        S::from(self.gravitational_parameter) / (radius * radius)
+        (radius * radius).recip() * self.gravitational_parameter
     }
 }

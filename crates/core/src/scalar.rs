@@ -10,7 +10,8 @@ use num_traits::{One, Zero};
 ///
 /// Formulas keep their constants on the right (`speed * speed * 0.5`), so that these bounds suffice,
 /// and choose with [`select`](Self::select) in place of `if`, so that numbers which hold several values can follow.
-/// The value of a dual number goes through the very operations that `f64` goes through: both give the same digits.
+/// The value of a dual number goes through the very operations that `f64` goes through, so that both give the same digits:
+/// therefore there is no division, which dual numbers round in another way, but [`recip`](Self::recip).
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
@@ -20,7 +21,6 @@ pub trait Scalar:
     + ClosedAddAssign
     + ClosedSubAssign
     + ClosedMulAssign
-    + Div<Output = Self>
     + Neg<Output = Self>
     + Add<f64, Output = Self>
     + Sub<f64, Output = Self>
@@ -38,6 +38,10 @@ pub trait Scalar:
 
     /// `chosen` where the mask holds, `otherwise` where it does not.
     fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
+
+    /// One over the number.
+    #[must_use]
+    fn recip(self) -> Self;
 
     /// The square root; at zero its slope is taken as zero, that of the length of a vector at its smallest.
     #[must_use]
@@ -77,6 +81,11 @@ where
     }
 
     #[inline(always)]
+    fn recip(self) -> Self {
+        DualNum::recip(&self)
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         if self.re() == 0.0 { Self::zero() } else { DualNum::sqrt(&self) }
     }
@@ -107,6 +116,6 @@ pub fn length<S: Scalar>(vector: &Vector3<S>) -> S {
 #[inline(always)]
 pub fn direction<S: Scalar>(vector: &Vector3<S>, length: S) -> Vector3<S> {
     let divisor = S::select(length.less_than(f64::MIN_POSITIVE), S::one(), length);
-    let reciprocal = S::one() / divisor;
+    let reciprocal = divisor.recip();
     vector.map(|component| component * reciprocal)
 }

@@ -31,22 +31,23 @@ impl System<6> for Spherical {
         // ṙ = V sin γ   (9)
         let r_rate = v * sin_gamma;
         // θ̇ = V cos γ cos ψ / (r cos φ)   (10)
-        let longitude_rate = v * cos_gamma * cos_psi / (r * cos_phi);
+        let longitude_rate = v * cos_gamma * cos_psi * (r * cos_phi).recip();
         // φ̇ = V cos γ sin ψ / r   (11)
-        let latitude_rate = v * cos_gamma * sin_psi / r;
+        let latitude_rate = v * cos_gamma * sin_psi * r.recip();
         // V̇ = -D/m - g sin γ + rω² cos φ (cos φ sin γ - sin φ sin ψ cos γ)   (29)
         let v_rate = -air.drag - g * sin_gamma + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
         // Vγ̇ = (L/m) cos σ - g cos γ + (V²/r) cos γ + 2Vω cos φ cos ψ + rω² cos φ (cos φ cos γ + sin φ sin ψ sin γ)   (30)
         let gamma_rate = (lift_over_cos_gamma * cos_gamma * cos_sigma - g * cos_gamma
-            + v * v / r * cos_gamma
+            + v * v * r.recip() * cos_gamma
             + v * cos_phi * cos_psi * (2.0 * omega)
             + centrifugal * (cos_phi * cos_gamma + sin_phi * sin_psi * sin_gamma))
-            / v;
+            * v.recip();
         // Vψ̇ = L sin σ/(m cos γ) - (V²/r) cos γ cos ψ tan φ + 2Vω (sin ψ cos φ tan γ - sin φ) - (rω²/cos γ) sin φ cos φ cos ψ   (31)
-        let psi_rate = (lift_over_cos_gamma * sin_sigma - v * v / r * cos_gamma * cos_psi * sin_phi / cos_phi
-            + v * (sin_psi * cos_phi * sin_gamma / cos_gamma - sin_phi) * (2.0 * omega)
-            - centrifugal * sin_phi * cos_psi / cos_gamma)
-            / v;
+        let psi_rate = (lift_over_cos_gamma * sin_sigma
+            - v * v * r.recip() * cos_gamma * cos_psi * sin_phi * cos_phi.recip()
+            + v * (sin_psi * cos_phi * sin_gamma * cos_gamma.recip() - sin_phi) * (2.0 * omega)
+            - centrifugal * sin_phi * cos_psi * cos_gamma.recip())
+            * v.recip();
         [r_rate, longitude_rate, latitude_rate, v_rate, gamma_rate, psi_rate]
     }
 
