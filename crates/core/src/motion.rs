@@ -149,7 +149,8 @@ impl Forces {
         let altitude = self.planet.shape.altitude(position);
         let density = self.atmosphere.density(altitude);
         let dynamic_pressure = dynamic_pressure(density, speed);
-        let air = self.vehicle.aerodynamic_acceleration(dynamic_pressure);
+        // Per unit of dynamic pressure, so that the squares of tiny forces do not vanish.
+        let air = self.vehicle.aerodynamic_acceleration(S::one());
         let cos_squared = cos_squared_flight_path_angle(state);
         let lift = air.lift * lift_fade_over_cosine(cos_squared) * cos_squared.sqrt();
         let acceleration = self.acceleration(state);
@@ -160,7 +161,7 @@ impl Forces {
             density,
             dynamic_pressure,
             deceleration: -S::select(at_rest, length(&acceleration), along),
-            load_factor: (air.drag * air.drag + lift * lift).sqrt() / STANDARD_GRAVITY,
+            load_factor: dynamic_pressure * (air.drag * air.drag + lift * lift).sqrt() / STANDARD_GRAVITY,
         }
     }
 }
