@@ -29,7 +29,10 @@ pub fn thesis_cases() -> Vec<ThesisCase> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/thesis");
     let mut files: Vec<_> = fs::read_dir(folder).expect("the folder").flatten().map(|entry| entry.path()).collect();
     files.sort();
-    files.iter().flat_map(|file| cases_of(&read_json(file))).collect()
+    let mut cases: Vec<_> = files.iter().flat_map(|file| cases_of(&read_json(file))).collect();
+    // By the tables of the thesis.
+    cases.sort_by(|a, b| a.title.cmp(&b.title));
+    cases
 }
 
 fn cases_of(file: &Value) -> Vec<ThesisCase> {

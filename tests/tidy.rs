@@ -1,1 +1,144 @@
+//! The rules of the house that a compiler does not see: who may know whom, and who may do what.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
+const CORE: [&[&str]; 8] = [
+    &["scalar", "root"],
+    &["integrate"],
+    &["planet", "atmosphere", "vehicle"],
+    &["coordinates"],
+    &["motion"],
+    &["scenario"],
+    &["trajectory"],
+    &["simulate"],
+];
+
+/// The levels of the service.
+const SERVICE: [&[&str]; 8] = [
+    &["wire", "config", "middleware"],
+    &["error", "telemetry"],
+    &["compute", "format", "openapi"],
+    &["state"],
+    &["extract"],
+    &["endpoints"],
+    &["router"],
+    &["serve"],
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// All files below a folder of the repository, with its text.
+fn sources(folder: &str, extension: &str) -> Vec<(PathBuf, String)> {
+    let mut files = Vec::new();
+    let mut open = vec![root().join(folder)];
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            open.extend(fs::read_dir(&path).unwrap().flatten().map(|entry| entry.path()));
+        } else if path.extension().is_some_and(|found| found == extension) {
+            let text = fs::read_to_string(&path).unwrap();
+            files.push((path, text));
+        }
+    }
+    assert!(!files.is_empty(), "{folder} has no {extension} files");
+    files
+}
+
+/// The top-level module to which a file belongs.
+fn module_of(file: &Path, src: &Path) -> String {
+    let relative = file.strip_prefix(src).unwrap();
+    let first = relative.components().next().unwrap().as_os_str().to_string_lossy();
+    first.trim_end_matches(".rs").to_owned()
+}
+
+/// The top-level modules that a text names by `crate::module`.
+fn named_modules(text: &str) -> Vec<String> {
+    let after = text.split("crate::").skip(1);
+    after.map(|rest| rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()).collect()
+}
+
+fn check_layers(src: &str, levels: &[&[&str]]) {
+    let level = |module: &str| levels.iter().position(|level| level.contains(&module));
+    for (file, text) in sources(src, "rs") {
+        let module = module_of(&file, &root().join(src));
+        if module == "lib" || module == "main" {
+            continue;
+        }
+        let own = level(&module).unwrap_or_else(|| panic!("{module} has no level in tidy.rs"));
+        for named in named_modules(&text) {
+            let allowed = named == module || level(&named).is_some_and(|other| other < own);
+            assert!(allowed, "{} names crate::{named}, which is not below {module}", file.display());
+        }
+    }
+}
+
+#[test]
+fn modules_know_only_what_lies_below_them() {
+    check_layers("crates/core/src", &CORE);
+    check_layers("crates/service/src", &SERVICE);
+}
+
+#[test]
+fn the_core_knows_no_json_clock_thread_file_or_chance() {
+    for (file, text) in sources("crates/core/src", "rs") {
+        for word in ["serde", "tokio", "std::time", "SystemTime", "Instant::now", "std::thread", "std::fs", "rand::"] {
+            assert!(!text.contains(word), "{} names {word}", file.display());
+        }
+    }
+    let manifest = fs::read_to_string(root().join("crates/core/Cargo.toml")).unwrap();
+    for name in ["serde", "tokio", "axum", "tracing"] {
+        assert!(!manifest.contains(name), "the core depends on {name}");
+    }
+}
+
+#[test]
+fn integration_has_not_heard_of_flight() {
+    for (file, text) in sources("crates/core/src/integrate", "rs") {
+        for word in ["altitude", "planet", "vehicle", "velocity", "atmosphere"] {
+            assert!(!text.contains(word), "{} names {word}", file.display());
+        }
+    }
+}
+
+/// Angles are converted in `wire` alone, jobs are spawned in `compute` alone, and `error` alone knows which failure has which status.
+#[test]
+fn each_duty_has_one_place() {
+    for (file, text) in sources("crates", "rs") {
+        let name = file.display().to_string();
+        let only = |word: &str, places: &[&str]| {
+            let here = places.iter().any(|place| name.contains(place));
+            assert!(here || !text.contains(word), "{name} has {word}, which belongs to {places:?}");
+        };
+        only("to_degrees()", &["src/wire", "tests"]);
+        only("to_radians()", &["src/wire", "tests"]);
+        only("spawn_blocking", &["src/compute.rs"]);
+        only("UNPROCESSABLE_ENTITY", &["src/error.rs"]);
+        only("std::env", &["src/config.rs"]);
+    }
+}
+
+#[test]
+fn nothing_is_left_to_do_and_nothing_panics_on_purpose() {
+    for (file, text) in sources("crates", "rs") {
+        for word in ["TODO", "FIXME", "XXX", "todo!(", "unimplemented!(", "#[ignore", "dbg!(", "unsafe "] {
+            assert!(!text.contains(word), "{} has {word}", file.display());
+        }
+    }
+}
+
+#[test]
+fn every_path_that_the_dockerfile_copies_exists() {
+    let dockerfile = fs::read_to_string(root().join("Dockerfile")).unwrap();
+    let mut copied = 0;
+    for line in dockerfile.lines().filter(|line| line.starts_with("COPY ") && !line.contains("--from=")) {
+        let paths: Vec<_> = line.split_whitespace().skip(1).filter(|word| !word.starts_with("--")).collect();
+        for path in &paths[..paths.len() - 1] {
+            assert!(root().join(path).exists(), "{line}: {path} does not exist");
+            copied += 1;
+        }
+    }
+    assert!(copied > 0, "the Dockerfile copies nothing");
+}

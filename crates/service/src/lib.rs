@@ -16,4 +16,4 @@ pub mod state;
 pub mod telemetry;
 pub mod wire;
 
-pub use router::app;
+pub use router::{app, document};

@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 use reentry_service::config::Config;
 use reentry_service::serve::{serve, stop_signal};
 use reentry_service::state::AppState;
-use reentry_service::{openapi, telemetry};
+use reentry_service::{document, telemetry};
 use tokio::net::TcpListener;
 
 /// Flies vehicles back through the atmosphere.
@@ -29,7 +29,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Serve(config) => run(config),
-        Command::Openapi => writeln!(std::io::stdout(), "{:#}", openapi::document()),
+        Command::Openapi => writeln!(std::io::stdout(), "{:#}", document()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,6 +4,7 @@ use axum::extract::{DefaultBodyLimit, OriginalUri};
 use axum::http::{Method, header};
 use axum::routing::get;
 use axum::{Json, Router, middleware};
+use serde_json::Value;
 use tower_http::CompressionLevel;
 use tower_http::compression::CompressionLayer;
 use tower_http::compression::predicate::SizeAbove;
@@ -20,7 +21,7 @@ use crate::openapi::{self, Document};
 use crate::state::AppState;
 
 /// The routes of the OpenAPI document.
-pub fn routes() -> OpenApiRouter<AppState> {
+fn routes() -> OpenApiRouter<AppState> {
     OpenApiRouter::with_openapi(Document::openapi())
         .routes(routes!(simulate::simulate))
         .routes(routes!(convert::convert))
@@ -28,10 +29,15 @@ pub fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(health::ready))
 }
 
+/// The OpenAPI document that the service gives and that is committed as `openapi/openapi.json`.
+pub fn document() -> Value {
+    openapi::strict(routes().get_openapi())
+}
+
 /// The whole service.
 pub fn app(state: AppState) -> Router {
     let (api, _) = routes().split_for_parts();
-    let document = openapi::document();
+    let document = document();
     let docs = SwaggerUi::new("/docs").config(DocsConfig::from("/openapi.json"));
     let compression = CompressionLayer::new()
         .quality(CompressionLevel::Fastest)

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 
-use super::{LocalHorizon, PlanetFixed, wrap_to_half_turns, wrap_to_turn};
+use super::{LocalHorizon, PlanetFixed, longitude_and_latitude, wrap_to_half_turns, wrap_to_turn};
 use crate::planet::Shape;
 
 /// Place and motion relative to the rotating planet, against the geodetic local horizontal (the plane normal to the ellipsoid's normal).
@@ -67,7 +67,7 @@ pub fn latitude_and_altitude(position: &Vector3<f64>, shape: &Shape) -> (f64, f6
     let equatorial = position.x.hypot(position.y);
     let axial = position.z.abs();
     let (latitude, altitude) = match *shape {
-        Shape::Sphere { radius } => (axial.atan2(equatorial), equatorial.hypot(axial) - radius),
+        Shape::Sphere { .. } => return (longitude_and_latitude(position).1, shape.altitude(position)),
         Shape::Ellipsoid { equatorial_radius: a, polar_radius: b } if a >= b => {
             let (normal_equatorial, normal_axial, altitude) = nearest_point((a, b), (equatorial, axial));
             (normal_axial.atan2(normal_equatorial), altitude)
