@@ -1,13 +1,19 @@
 //! The JSON of the API and its translation to and from the core; angles and calendars are converted here and nowhere else.
 //!
-//! A request is parsed to a tree ([`reader::parse`]), read into the types of this module with every fault noted
+//! A request is parsed to a tree ([`json::parse`]), read into the types of this module with every fault noted
 //! ([`reader::read`]), and translated to a core type, whose own checks see what concerns several fields.
 
-pub mod convert;
-pub mod epoch;
+pub mod json;
 pub mod reader;
-pub mod scenario;
+
+pub mod atmosphere;
+pub mod epoch;
+pub mod planet;
 pub mod state;
+pub mod vehicle;
+
+pub mod convert;
+pub mod scenario;
 pub mod trajectory;
 
 use serde::Serialize;

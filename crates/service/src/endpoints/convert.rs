@@ -10,7 +10,7 @@ use crate::extract::Payload;
 use crate::format::Format;
 use crate::state::AppState;
 use crate::wire::convert::{ConvertRequest, ConvertResponse};
-use crate::wire::reader;
+use crate::wire::json;
 
 /// Writes a state in every coordinate system.
 ///
@@ -31,7 +31,7 @@ pub async fn convert(State(app): State<AppState>, parts: Parts, Payload(body): P
     let body = app
         .compute
         .run(move |_| {
-            let response = ConvertResponse::try_from_tree(reader::parse(&body)?).map_err(ApiError::Invalid)?;
+            let response = ConvertResponse::try_from_tree(json::parse(&body)?).map_err(ApiError::Invalid)?;
             Ok(serde_json::to_vec(&response)?)
         })
         .await?;

@@ -11,7 +11,8 @@ use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
 use crate::state::AppState;
-use crate::wire::reader::{self, Fault};
+use crate::wire::json;
+use crate::wire::reader::Fault;
 use crate::wire::scenario::{Job, SimulateRequest};
 use crate::wire::trajectory::SimulateResponse;
 
@@ -42,7 +43,7 @@ pub async fn simulate(State(app): State<AppState>, parts: Parts, Payload(body): 
     let body = app
         .compute
         .run(move |interrupt| {
-            let job = Job::try_from_tree(reader::parse(&body)?).map_err(ApiError::Invalid)?;
+            let job = Job::try_from_tree(json::parse(&body)?).map_err(ApiError::Invalid)?;
             if format == Format::Csv && job.sampling.is_none() {
                 let detail = "must not be false where CSV is asked for, which is nothing but the trajectory";
                 return Err(ApiError::Invalid(vec![Fault::new("/output/trajectory", detail)]));

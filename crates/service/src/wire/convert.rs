@@ -8,8 +8,9 @@ use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::epoch::Instant;
+use super::planet::Planet;
 use super::reader::{self, Fault, Object};
-use super::scenario::{Planet, read_epoch};
+use super::scenario::read_epoch;
 use super::state::{Ecef, Eci, Geodetic, OrbitalElements, PlanetRelative, State};
 use super::trajectory::Warning;
 

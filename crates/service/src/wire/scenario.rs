@@ -1,18 +1,18 @@
-//! The request of `/simulate`: planet, atmosphere, vehicle, control, state, stop, output and solver.
+//! The request of `/simulate`: its parts, stop, output and solver.
 
-use reentry::atmosphere::Atmosphere as CoreAtmosphere;
-use reentry::planet::{Planet as CorePlanet, Shape as CoreShape};
 use reentry::scenario::{self, Bound, Case, Equations, Scenario};
 use reentry::trajectory::Sampling;
-use reentry::vehicle::{Aerodynamics as CoreAerodynamics, Vehicle as CoreVehicle};
 use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
+use super::atmosphere::Atmosphere;
 use super::epoch::Instant;
+use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::state::State;
+use super::vehicle::{Control, Vehicle};
 
 /// A case to simulate. `vehicle` and `initial_state` are required; all else has defaults. SI units; angles in `angle_unit`.
 #[derive(Clone, Debug, ToSchema)]
@@ -51,123 +51,6 @@ pub struct SimulateRequest {
     /// How the equations are integrated.
     #[schema(required = false)]
     pub solver: Solver,
-}
-
-/// The planets whose numbers are known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PlanetModel {
-    /// WGS 84.
-    EarthWgs84,
-    /// The numbers of the thesis's program, which made its results: g₀ = 9.798 m/s².
-    EarthJamesonListing,
-    /// The numbers of the thesis's text: g₀ = 9.7803253359 m/s².
-    EarthJamesonText,
-    /// The four numbers given beside it.
-    Custom,
-}
-
-/// The surface from which altitudes are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Shape {
-    /// A sphere of the equatorial radius.
-    Sphere,
-    /// An ellipsoid of revolution.
-    Ellipsoid,
-}
-
-/// The planet. The four numbers are given with the model `custom`, and only there.
-#[derive(Clone, Copy, Debug, ToSchema)]
-pub struct Planet {
-    /// Which planet.
-    #[schema(required = false, default = "earth_wgs84")]
-    pub model: PlanetModel,
-    /// Its surface.
-    #[schema(required = false, default = "ellipsoid")]
-    pub shape: Shape,
-    /// Acceleration of gravity times the squared radius, m³/s²; of a custom planet.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0, maximum = 1e25)]
-    pub gravitational_parameter: Option<f64>,
-    /// m; of a custom planet.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0, maximum = 1e12)]
-    pub equatorial_radius: Option<f64>,
-    /// m; of a custom planet.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0, maximum = 1e12)]
-    pub polar_radius: Option<f64>,
-    /// Relative to inertial space, positive to the east, rad/s whatever the `angle_unit`; of a custom planet; 0 is allowed.
-    #[schema(required = false, value_type = f64, minimum = -1, maximum = 1)]
-    pub rotation_rate: Option<f64>,
-    /// The same, for the core.
-    #[schema(ignore)]
-    pub core: CorePlanet,
-}
-
-/// The atmosphere, which turns with the planet.
-#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
-#[serde(untagged)]
-#[schema(discriminator(property_name = "type", mapping(("exponential" = "#/components/schemas/ExponentialAtmosphere"))))]
-pub enum Atmosphere {
-    /// One scale height.
-    Exponential(ExponentialAtmosphere),
-}
-
-/// Density ρ₀ e^(-h/H) at the altitude h along the radius vector.
-#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
-pub struct ExponentialAtmosphere {
-    /// The kind of atmosphere.
-    #[serde(rename = "type")]
-    pub kind: &'static str,
-    /// ρ₀, at altitude 0, kg/m³.
-    #[schema(required = false, minimum = 0, default = 1.54793)]
-    pub surface_density: f64,
-    /// H, m.
-    #[schema(required = false, exclusive_minimum = 0, default = 6935)]
-    pub scale_height: f64,
-}
-
-/// A point mass with lift and drag.
-#[derive(Clone, Copy, Debug, ToSchema)]
-pub struct Vehicle {
-    /// kg.
-    #[schema(exclusive_minimum = 0)]
-    pub mass: f64,
-    /// The area to which the coefficients refer, m².
-    #[schema(minimum = 0)]
-    pub reference_area: f64,
-    /// Lift and drag.
-    pub aerodynamics: Aerodynamics,
-}
-
-/// Lift and drag coefficients.
-#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
-#[serde(untagged)]
-#[schema(discriminator(property_name = "type", mapping(("constant" = "#/components/schemas/ConstantAerodynamics"))))]
-pub enum Aerodynamics {
-    /// The same at every speed.
-    Constant(ConstantAerodynamics),
-}
-
-/// Coefficients that are the same at every speed.
-#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
-pub struct ConstantAerodynamics {
-    /// The kind of aerodynamics.
-    #[serde(rename = "type")]
-    pub kind: &'static str,
-    /// Negative lift points down at zero bank. Lift fades out within 0.001 rad of the vertical, where the bank angle is undefined.
-    #[schema(required = false, default = 0)]
-    pub lift_coefficient: f64,
-    /// Drag acts against the velocity relative to the rotating planet.
-    #[schema(minimum = 0)]
-    pub drag_coefficient: f64,
-}
-
-/// How the vehicle is flown.
-#[derive(Clone, Copy, Debug, ToSchema)]
-pub struct Control {
-    /// 0: lift upward in the plane of radius and velocity; positive tilts it to the left of the flight direction. Within ±2π (±360°).
-    #[schema(required = false, minimum = -360, maximum = 360, default = 0)]
-    pub bank_angle: f64,
 }
 
 /// When the flight ends, whichever comes first.
@@ -329,113 +212,6 @@ pub fn fault(fault: &scenario::Fault) -> Fault {
 /// Reads the epoch, which may be left out.
 pub fn read_epoch(object: &mut Object) -> Option<Instant> {
     if object.has("epoch") { object.value("epoch", Instant::read) } else { None }
-}
-
-impl Planet {
-    /// Reads a planet; a named one must not have numbers of its own.
-    pub fn read(object: &mut Object) -> Option<Self> {
-        const MODELS: [(&str, PlanetModel); 4] = [
-            ("earth_wgs84", PlanetModel::EarthWgs84),
-            ("earth_jameson_listing", PlanetModel::EarthJamesonListing),
-            ("earth_jameson_text", PlanetModel::EarthJamesonText),
-            ("custom", PlanetModel::Custom),
-        ];
-        let model = object.choice_or("model", &MODELS, "earth_wgs84");
-        let shape =
-            object.choice_or("shape", &[("sphere", Shape::Sphere), ("ellipsoid", Shape::Ellipsoid)], "ellipsoid");
-        let core = match model? {
-            PlanetModel::EarthWgs84 => CorePlanet::EARTH_WGS84,
-            PlanetModel::EarthJamesonListing => CorePlanet::EARTH_JAMESON_LISTING,
-            PlanetModel::EarthJamesonText => CorePlanet::EARTH_JAMESON_TEXT,
-            PlanetModel::Custom => Self::read_custom(object)?,
-        };
-        let core = if shape? == Shape::Sphere { core.spherical() } else { core };
-        let custom = model? == PlanetModel::Custom;
-        let (equatorial_radius, polar_radius) = core.shape.semi_axes();
-        Some(Self {
-            model: model?,
-            shape: shape?,
-            gravitational_parameter: custom.then_some(core.gravitational_parameter),
-            equatorial_radius: custom.then_some(equatorial_radius),
-            polar_radius: custom.then_some(polar_radius),
-            rotation_rate: custom.then_some(core.rotation_rate),
-            core,
-        })
-    }
-
-    fn read_custom(object: &mut Object) -> Option<CorePlanet> {
-        let gravitational_parameter = object.number("gravitational_parameter", Bound::GRAVITATIONAL_PARAMETER);
-        let equatorial_radius = object.number("equatorial_radius", Bound::RADIUS);
-        let polar_radius = object.number("polar_radius", Bound::RADIUS);
-        let rotation_rate = object.number("rotation_rate", Bound::ROTATION_RATE);
-        Some(CorePlanet {
-            shape: CoreShape::Ellipsoid { equatorial_radius: equatorial_radius?, polar_radius: polar_radius? },
-            gravitational_parameter: gravitational_parameter?,
-            orbital_gravitational_parameter: gravitational_parameter?,
-            rotation_rate: rotation_rate?,
-        })
-    }
-}
-
-impl Atmosphere {
-    fn read(object: &mut Object) -> Option<Self> {
-        object.choice("type", &[("exponential", ())])?;
-        let surface_density = object.number_or("surface_density", Bound::NON_NEGATIVE, 1.547_93);
-        let scale_height = object.number_or("scale_height", Bound::POSITIVE, 6935.0);
-        Some(Self::Exponential(ExponentialAtmosphere {
-            kind: "exponential",
-            surface_density: surface_density?,
-            scale_height: scale_height?,
-        }))
-    }
-
-    fn to_core(self) -> CoreAtmosphere {
-        let Self::Exponential(ExponentialAtmosphere { surface_density, scale_height, .. }) = self;
-        CoreAtmosphere::Exponential { surface_density, scale_height }
-    }
-
-    /// Its `type`.
-    pub fn kind(self) -> &'static str {
-        let Self::Exponential(exponential) = self;
-        exponential.kind
-    }
-}
-
-impl Vehicle {
-    fn read(object: &mut Object) -> Option<Self> {
-        let mass = object.number("mass", Bound::POSITIVE);
-        let reference_area = object.number("reference_area", Bound::NON_NEGATIVE);
-        let aerodynamics = object.object("aerodynamics", Aerodynamics::read);
-        Some(Self { mass: mass?, reference_area: reference_area?, aerodynamics: aerodynamics? })
-    }
-
-    fn to_core(self) -> CoreVehicle {
-        let Aerodynamics::Constant(ConstantAerodynamics { lift_coefficient, drag_coefficient, .. }) = self.aerodynamics;
-        CoreVehicle {
-            mass: self.mass,
-            reference_area: self.reference_area,
-            aerodynamics: CoreAerodynamics::Constant { lift_coefficient, drag_coefficient },
-        }
-    }
-}
-
-impl Aerodynamics {
-    fn read(object: &mut Object) -> Option<Self> {
-        object.choice("type", &[("constant", ())])?;
-        let lift_coefficient = object.number_or("lift_coefficient", Bound::FINITE, 0.0);
-        let drag_coefficient = object.number("drag_coefficient", Bound::NON_NEGATIVE);
-        Some(Self::Constant(ConstantAerodynamics {
-            kind: "constant",
-            lift_coefficient: lift_coefficient?,
-            drag_coefficient: drag_coefficient?,
-        }))
-    }
-}
-
-impl Control {
-    fn read(object: &mut Object) -> Option<Self> {
-        Some(Self { bank_angle: object.angle_or("bank_angle", Bound::TURN, 0.0)? })
-    }
 }
 
 impl Stop {

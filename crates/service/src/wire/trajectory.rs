@@ -10,7 +10,8 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
-use super::scenario::{Formulation, Job, PlanetModel, Shape};
+use super::planet::{PlanetModel, Shape};
+use super::scenario::{Formulation, Job};
 
 /// One quantity of the flight: a key of the states, a column of the trajectory.
 pub struct Column {

@@ -1,0 +1,128 @@
+//! The type `orbital_elements`.
+
+use reentry::coordinates::{self, OrbitShape};
+use reentry::scenario::Bound;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::sidereal_time;
+use crate::wire::AngleUnit;
+use crate::wire::epoch::SiderealTime;
+use crate::wire::reader::{Fault, Object};
+
+/// Classical orbital elements in the inertial frame.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct OrbitalElements {
+    /// The kind of state.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// m; positive below eccentricity 1, negative above. Exactly one of `semi_major_axis` and `semi_latus_rectum`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub semi_major_axis: Option<f64>,
+    /// m; the only size that a parabola has. Exactly one of `semi_major_axis` and `semi_latus_rectum`.
+    #[schema(exclusive_minimum = 0)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub semi_latus_rectum: Option<f64>,
+    /// 0 a circle, below 1 an ellipse, 1 a parabola, above a hyperbola.
+    #[schema(minimum = 0)]
+    pub eccentricity: f64,
+    /// Of the orbit's angular momentum to the pole, in [0, π] (180°).
+    #[schema(minimum = 0, maximum = 180)]
+    pub inclination: f64,
+    /// Right ascension of the ascending node, within ±2π (±360°); answers give [0, 2π).
+    #[schema(minimum = -360, maximum = 360)]
+    pub raan: f64,
+    /// From the ascending node to the periapsis, within ±2π (±360°); answers give [0, 2π).
+    #[schema(minimum = -360, maximum = 360)]
+    pub argument_of_periapsis: f64,
+    /// From the periapsis to the vehicle, within ±2π (±360°); answers give [0, 2π).
+    #[schema(minimum = -360, maximum = 360)]
+    pub true_anomaly: f64,
+    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sidereal_time: Option<SiderealTime>,
+}
+
+impl OrbitalElements {
+    pub(super) fn read(object: &mut Object) -> Option<Self> {
+        let semi_major_axis = object.optional_number("semi_major_axis", Bound::FINITE);
+        let semi_latus_rectum = object.optional_number("semi_latus_rectum", Bound::POSITIVE);
+        let size = object.exactly_one(&["semi_major_axis", "semi_latus_rectum"]);
+        let eccentricity = object.number("eccentricity", Bound::NON_NEGATIVE);
+        let inclination = object.angle("inclination", Bound::HALF_TURN);
+        let raan = object.angle("raan", Bound::TURN);
+        let argument_of_periapsis = object.angle("argument_of_periapsis", Bound::TURN);
+        let true_anomaly = object.angle("true_anomaly", Bound::TURN);
+        let sidereal_time = sidereal_time(object);
+        size?;
+        Some(Self {
+            kind: "orbital_elements",
+            semi_major_axis,
+            semi_latus_rectum,
+            eccentricity: eccentricity?,
+            inclination: inclination?,
+            raan: raan?,
+            argument_of_periapsis: argument_of_periapsis?,
+            true_anomaly: true_anomaly?,
+            sidereal_time,
+        })
+    }
+
+    /// The orbit's size must go with its eccentricity, and the vehicle must be on it.
+    pub(super) fn fault(&self, pointer: &str, unit: AngleUnit) -> Option<Fault> {
+        let e = self.eccentricity;
+        if let Some(a) = self.semi_major_axis {
+            let detail = if e.total_cmp(&1.0).is_eq() {
+                "a parabola (eccentricity 1) has no semi-major axis; give semi_latus_rectum in its place".to_owned()
+            } else if a * (1.0 - e) <= 0.0 {
+                let sign = if e < 1.0 { "positive" } else { "negative" };
+                format!("must be {sign} where the eccentricity is {e:?}, got {a:?}")
+            } else {
+                String::new()
+            };
+            if !detail.is_empty() {
+                return Some(Fault::new(format!("{pointer}/semi_major_axis"), detail));
+            }
+        }
+        let reach = 1.0 + e * unit.to_radians(self.true_anomaly).cos();
+        (reach <= 0.0).then(|| {
+            let detail =
+                format!("lies beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach:?}");
+            Fault::new(format!("{pointer}/true_anomaly"), detail)
+        })
+    }
+
+    pub(super) fn to_core(&self, unit: AngleUnit) -> coordinates::OrbitalElements {
+        let shape = match (self.semi_latus_rectum, self.semi_major_axis) {
+            (Some(p), _) => OrbitShape::SemiLatusRectum(p),
+            (None, a) => OrbitShape::SemiMajorAxis(a.unwrap_or(f64::NAN)),
+        };
+        coordinates::OrbitalElements {
+            shape,
+            eccentricity: self.eccentricity,
+            inclination: unit.to_radians(self.inclination),
+            raan: unit.to_radians(self.raan),
+            argument_of_periapsis: unit.to_radians(self.argument_of_periapsis),
+            true_anomaly: unit.to_radians(self.true_anomaly),
+        }
+    }
+
+    /// The elements in the given unit of angles.
+    pub fn from_core(elements: &coordinates::OrbitalElements, unit: AngleUnit, sidereal_time: f64) -> Self {
+        let (semi_major_axis, semi_latus_rectum) = match elements.shape {
+            OrbitShape::SemiMajorAxis(a) => (Some(a), None),
+            OrbitShape::SemiLatusRectum(p) => (None, Some(p)),
+        };
+        Self {
+            kind: "orbital_elements",
+            semi_major_axis,
+            semi_latus_rectum,
+            eccentricity: elements.eccentricity,
+            inclination: unit.from_radians(elements.inclination),
+            raan: unit.turn_from_radians(elements.raan),
+            argument_of_periapsis: unit.turn_from_radians(elements.argument_of_periapsis),
+            true_anomaly: unit.turn_from_radians(elements.true_anomaly),
+            sidereal_time: Some(SiderealTime::Seconds(sidereal_time)),
+        }
+    }
+}
