@@ -1,10 +1,13 @@
 //! The tests of the project, in one program.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on has failed")]
+
 mod check;
 mod conversions;
 mod flights;
 mod http;
 mod integrator;
+mod openapi;
 mod pitfalls;
 mod properties;
 mod reference;

@@ -79,7 +79,7 @@ proptest! {
     fn rows_do_not_change_the_flight(case in random_entry(), count in 2_usize..50) {
         let flight = fly(case);
         for sampling in [Sampling::Count(count), Sampling::PerStep(count), Sampling::Interval(7.0)] {
-            let times = flight.instants(&sampling, 100_000).unwrap();
+            let times = flight.instants(&sampling, usize::MAX).unwrap();
             prop_assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
             prop_assert!(times[0].to_bits() == 0 && times[times.len() - 1].to_bits() == flight.end_time().to_bits());
             let points = flight.points(&times);

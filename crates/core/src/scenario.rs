@@ -31,9 +31,13 @@ impl Bound {
     pub const NON_NEGATIVE: Self = Self::between(0.0, f64::MAX);
     /// Speeds, m/s.
     pub const SPEED: Self = Self::between(0.0, 1e6);
+    /// Components of a velocity relative to the rotating planet, m/s.
+    pub const VELOCITY: Self = Self::between(-1e6, 1e6);
     /// Coordinates and altitudes, m.
     pub const DISTANCE: Self = Self::between(-1e12, 1e12);
-    /// Radii, m.
+    /// Radii of planets, m.
+    pub const PLANET_RADIUS: Self = Self::between(1.0, 1e12);
+    /// Distances from the planet's centre, m.
     pub const RADIUS: Self = Self::above(0.0, 1e12);
     /// Latitudes and flight-path angles, rad.
     pub const QUARTER_TURN: Self = Self::between(-FRAC_PI_2, FRAC_PI_2);
@@ -41,8 +45,8 @@ impl Bound {
     pub const HALF_TURN: Self = Self::between(0.0, PI);
     /// Every other angle, rad.
     pub const TURN: Self = Self::between(-TAU, TAU);
-    /// Gravitational parameters, m³/s²; the Sun's is 1.3e20.
-    pub const GRAVITATIONAL_PARAMETER: Self = Self::above(0.0, 1e25);
+    /// Gravitational parameters, m³/s², from that of a boulder on; the Sun's is 1.3e20.
+    pub const GRAVITATIONAL_PARAMETER: Self = Self::between(1e-6, 1e25);
     /// Rotation rates, rad/s.
     pub const ROTATION_RATE: Self = Self::between(-1.0, 1.0);
     /// The time at which a flight ends, s.
@@ -91,7 +95,9 @@ struct Plain(f64);
 impl fmt::Display for Plain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let magnitude = self.0.abs();
-        if magnitude != 0.0 && !(1e-4..1e7).contains(&magnitude) {
+        if !magnitude.is_finite() {
+            write!(f, "more than any number")
+        } else if magnitude != 0.0 && !(1e-4..1e7).contains(&magnitude) {
             write!(f, "{:e}", self.0)
         } else {
             write!(f, "{}", self.0)
@@ -188,30 +194,32 @@ pub enum Fault {
         bound: Bound,
     },
     /// The planet is too flat or too long.
-    #[error("polar_radius must be between 0.1 and 10 times equatorial_radius, got {ratio} times")]
+    #[error("must be between 0.1 and 10 times the equatorial radius of {equatorial_radius} m, got {polar_radius}")]
     OddShape {
-        /// Polar over equatorial radius.
-        ratio: f64,
+        /// m.
+        equatorial_radius: f64,
+        /// m.
+        polar_radius: f64,
     },
     /// The altitude that ends the flight lies at the planet's centre or beyond.
-    #[error("the stop altitude must be greater than {minimum} m, that of the planet's centre, got {altitude}")]
+    #[error("must be greater than {minimum} m, the altitude of the planet's centre, got {altitude}")]
     StopBelowCentre {
         /// The stop altitude, m.
         altitude: f64,
         /// The altitude of the centre, m.
         minimum: f64,
     },
-    /// The position is the planet's centre.
+    /// The position is the planet's centre, or nearer than a millimetre.
     #[error("the position is the planet's centre, where gravity has no direction")]
     AtCentre,
     /// The position is too far away.
-    #[error("the distance from the planet's centre must be at most {} m, got {distance}", Plain(Bound::RADIUS.maximum))]
+    #[error("the distance from the planet's centre must be at most {} m, got {}", Plain(Bound::RADIUS.maximum), Plain(*.distance))]
     TooFar {
         /// From the planet's centre, m.
         distance: f64,
     },
     /// The motion is too fast.
-    #[error("the speed relative to the rotating planet must be at most {} m/s, got {speed}", Plain(Bound::SPEED.maximum))]
+    #[error("the speed relative to the rotating planet must be at most {} m/s, got {}", Plain(Bound::SPEED.maximum), Plain(*.speed))]
     TooFast {
         /// Relative to the rotating planet, m/s.
         speed: f64,
@@ -303,7 +311,7 @@ pub fn planet_faults(planet: &Planet, stop: &Stop) -> Vec<Fault> {
     let ratio = polar_radius / equatorial_radius;
     let mut faults = Vec::new();
     if !(0.1..=10.0).contains(&ratio) {
-        faults.push(Fault::OddShape { ratio });
+        faults.push(Fault::OddShape { equatorial_radius, polar_radius });
     }
     let minimum = -equatorial_radius.min(polar_radius);
     if stop.altitude <= minimum {
@@ -318,7 +326,7 @@ pub fn state_faults(state: &PlanetFixed<f64>) -> Vec<Fault> {
     // A norm may exceed the number from which its vector was made by a rounding.
     let within = |bound: Bound, norm: f64| norm <= bound.maximum * (1.0 + 1e-12);
     let mut faults = Vec::new();
-    if distance == 0.0 {
+    if distance < 1e-3 {
         faults.push(Fault::AtCentre);
     }
     if !within(Bound::RADIUS, distance) {
@@ -337,8 +345,8 @@ fn out_of_bounds(case: &Case) -> Vec<Fault> {
     let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
     let checks = [
         ("planet.gravitational_parameter", planet.gravitational_parameter, Bound::GRAVITATIONAL_PARAMETER),
-        ("planet.equatorial_radius", equatorial_radius, Bound::RADIUS),
-        ("planet.polar_radius", polar_radius, Bound::RADIUS),
+        ("planet.equatorial_radius", equatorial_radius, Bound::PLANET_RADIUS),
+        ("planet.polar_radius", polar_radius, Bound::PLANET_RADIUS),
         ("planet.rotation_rate", planet.rotation_rate, Bound::ROTATION_RATE),
         ("atmosphere.surface_density", surface_density, Bound::NON_NEGATIVE),
         ("atmosphere.scale_height", scale_height, Bound::POSITIVE),

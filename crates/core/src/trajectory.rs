@@ -1,6 +1,6 @@
 //! The answer: how the flight ended, its extremes, and its state at any time.
 
-use crate::coordinates::{FlightPath, PlanetFixed, latitude_and_altitude, wrap_to_half_turns};
+use crate::coordinates::{FlightPath, PlanetFixed, latitude_and_altitude};
 use crate::integrate::{Statistics, Step};
 use crate::motion::{Cartesian, Formulation, Loads, Spherical};
 use crate::scenario::{Case, Equations};
@@ -206,9 +206,7 @@ impl Trajectory {
             Equations::Cartesian => Cartesian::planet_fixed(coordinates),
             Equations::Spherical => Spherical::planet_fixed(coordinates),
         };
-        let mut flight_path = FlightPath::from_planet_fixed(&state);
-        flight_path.longitude = wrap_to_half_turns(flight_path.longitude);
-        flight_path.heading = wrap_to_half_turns(flight_path.heading);
+        let flight_path = FlightPath::from_planet_fixed(&state).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &self.case.planet.shape);
         let loads = self.case.forces().loads(&state);
         FlightPoint { time, flight_path, geodetic_latitude, geodetic_altitude, loads }

@@ -20,6 +20,12 @@ pub enum ApiError {
     /// The body ended early.
     #[error("the body could not be read: {0}")]
     UnreadableBody(String),
+    /// The body did not come in time.
+    #[error("the body did not come within {seconds} s")]
+    BodyTimeout {
+        /// The time allowed, s.
+        seconds: f64,
+    },
     /// There is nothing at this path.
     #[error("there is nothing at {0}; see /docs")]
     NotFound(String),
@@ -27,7 +33,7 @@ pub enum ApiError {
     #[error("{0} does not answer to this method; see /docs")]
     MethodNotAllowed(String),
     /// None of the representations that the client accepts.
-    #[error("this answer comes as {offered}; {asked} was asked for")]
+    #[error("this answer comes as {offered}, not as {asked:?}")]
     NotAcceptable {
         /// What there is.
         offered: String,
@@ -109,6 +115,7 @@ impl ApiError {
             Self::NotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
             Self::BadQuery(_) => (Status::BAD_REQUEST, "/problems/invalid-query", "Invalid query string"),
             Self::UnreadableBody(_) => (Status::BAD_REQUEST, "/problems/unreadable-body", "Unreadable body"),
+            Self::BodyTimeout { .. } => (Status::REQUEST_TIMEOUT, "/problems/request-timeout", "Body too slow"),
             Self::NotFound(_) => (Status::NOT_FOUND, "/problems/not-found", "Not found"),
             Self::MethodNotAllowed(_) => {
                 (Status::METHOD_NOT_ALLOWED, "/problems/method-not-allowed", "Method not allowed")

@@ -21,7 +21,18 @@ impl FromRequest<AppState> for Payload {
         if !is_json(media_type) {
             return Err(ApiError::UnsupportedMediaType(media_type.to_owned()));
         }
-        Bytes::from_request(request, state).await.map(Self).map_err(|rejection| unreadable(&rejection, state))
+        let limit = state.config.body_limit;
+        let declared = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok());
+        if declared.and_then(|length| length.parse().ok()).is_some_and(|length: u64| length > limit as u64) {
+            // Refused before it is sent, for clients that wait for the word to go on.
+            return Err(ApiError::PayloadTooLarge { limit });
+        }
+        let deadline = state.config.deadline;
+        match tokio::time::timeout(deadline, Bytes::from_request(request, state)).await {
+            Ok(Ok(body)) => Ok(Self(body)),
+            Ok(Err(rejection)) => Err(unreadable(&rejection, limit)),
+            Err(_) => Err(ApiError::BodyTimeout { seconds: deadline.as_secs_f64() }),
+        }
     }
 }
 
@@ -31,9 +42,9 @@ fn is_json(media_type: &str) -> bool {
     essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json"))
 }
 
-fn unreadable(rejection: &BytesRejection, state: &AppState) -> ApiError {
+fn unreadable(rejection: &BytesRejection, limit: usize) -> ApiError {
     if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
-        ApiError::PayloadTooLarge { limit: state.config.body_limit }
+        ApiError::PayloadTooLarge { limit }
     } else {
         ApiError::UnreadableBody(rejection.body_text())
     }

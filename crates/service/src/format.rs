@@ -59,10 +59,10 @@ impl Format {
 /// The offered format of the greatest quality in `Accept` (RFC 9110, section 12.5.1).
 fn accepted(headers: &HeaderMap, offered: &[Format]) -> Option<Format> {
     let accept: Vec<_> = headers.get_all(header::ACCEPT).iter().map(|value| value.to_str().unwrap_or("")).collect();
-    if accept.is_empty() {
+    let accept = accept.join(",");
+    if accept.trim().is_empty() {
         return offered.first().copied();
     }
-    let accept = accept.join(",");
     let mut best = None;
     for format in offered {
         let quality = quality(&accept, format.media_type());

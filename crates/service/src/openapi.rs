@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
 
 use crate::error::Problem;
+use crate::wire::epoch::RFC3339_PATTERN;
 
 /// The frame of the document; the router adds the paths.
 #[derive(OpenApi)]
@@ -31,11 +32,12 @@ const ALTERNATIVES: [(&str, &[&str]); 3] = [
 ];
 
 /// Every failure that every endpoint may answer with.
-const FAILURES: [(&str, &str); 10] = [
+const FAILURES: [(&str, &str); 11] = [
     ("400", "Not JSON, duplicate keys, or an unknown query parameter."),
     ("404", "There is nothing at this path."),
     ("405", "The path does not know this method."),
     ("406", "None of the representations that the client accepts."),
+    ("408", "The body did not come in the time allowed."),
     ("413", "The body is too long."),
     ("415", "The body is not declared as JSON."),
     ("422", "Not a valid case, or a flight that cannot be finished; every fault with its pointer."),
@@ -57,9 +59,10 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         }
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
-        for path in ["/simulate", "/convert"] {
+        for (path, formats) in [("/simulate", json!(["json", "csv"])), ("/convert", json!(["json"]))] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
                 add_failures(operation);
+                operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
             }
         }
         add_examples(paths);
@@ -118,16 +121,13 @@ fn close(name: &str, schema: &mut Map<String, Value>) {
         if let Some(variants) = property.get_mut("oneOf").and_then(Value::as_array_mut) {
             variants.retain(|variant| variant["type"] != "null");
         }
-        if property["type"] == "array" && (name == "Ecef" || name == "Eci") {
-            property["minItems"] = json!(3);
-            property["maxItems"] = json!(3);
-        }
     }
     schema.insert("additionalProperties".to_owned(), json!(false));
     if let Some((_, alternatives)) = ALTERNATIVES.iter().find(|(of, _)| *of == name) {
         let one = |field: &&str| json!({"required": [field]});
         schema.insert("oneOf".to_owned(), alternatives.iter().map(one).collect());
     }
+    refine(name, schema);
     if name == "Planet" {
         let numbers = ["gravitational_parameter", "equatorial_radius", "polar_radius", "rotation_rate"];
         let absent: Map<_, _> = numbers.iter().map(|name| ((*name).to_owned(), json!(false))).collect();
@@ -135,6 +135,28 @@ fn close(name: &str, schema: &mut Map<String, Value>) {
         schema.insert("if".to_owned(), custom);
         schema.insert("then".to_owned(), json!({"required": numbers}));
         schema.insert("else".to_owned(), json!({"properties": absent}));
+    }
+}
+
+/// Bounds of elements and of words, which the types do not tell.
+fn refine(name: &str, schema: &mut Map<String, Value>) {
+    let bounded = |least: f64, greatest: f64| json!({"minimum": least, "maximum": greatest});
+    let refinements = match name {
+        "Ecef" | "Eci" => vec![
+            ("position", json!({"minItems": 3, "maxItems": 3})),
+            ("position/items", bounded(-1e12, 1e12)),
+            ("velocity", json!({"minItems": 3, "maxItems": 3})),
+            ("velocity/items", if name == "Ecef" { bounded(-1e6, 1e6) } else { json!({}) }),
+        ],
+        "Output" => vec![("times/items", json!({"minimum": 0})), ("trajectory", json!({"enum": [false]}))],
+        "SimulateRequest" | "ConvertRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN}))],
+        _ => Vec::new(),
+    };
+    for (path, refinement) in refinements {
+        let property = schema.get_mut("properties").and_then(|properties| properties.pointer_mut(&format!("/{path}")));
+        if let (Some(property), Some(refinement)) = (property.and_then(Value::as_object_mut), refinement.as_object()) {
+            property.extend(refinement.clone());
+        }
     }
 }
 

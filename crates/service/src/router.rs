@@ -12,9 +12,8 @@ use tower_http::cors::{Any, CorsLayer};
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-use utoipa_swagger_ui::{Config as DocsConfig, SwaggerUi};
 
-use crate::endpoints::{convert, health, home, simulate};
+use crate::endpoints::{convert, docs, health, home, simulate};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, observe};
 use crate::openapi::{self, Document};
@@ -38,7 +37,6 @@ pub fn document() -> Value {
 pub fn app(state: AppState) -> Router {
     let (api, _) = routes().split_for_parts();
     let document = document();
-    let docs = SwaggerUi::new("/docs").config(DocsConfig::from("/openapi.json"));
     let compression = CompressionLayer::new()
         .quality(CompressionLevel::Fastest)
         .compress_when(SizeAbove::new(state.config.compress_above));
@@ -49,7 +47,9 @@ pub fn app(state: AppState) -> Router {
         .expose_headers([REQUEST_ID, header::RETRY_AFTER]);
     api.route("/", get(home::home))
         .route("/openapi.json", get(move || std::future::ready(Json(document.clone()))))
-        .merge(docs)
+        .route("/docs", get(docs::redirect))
+        .route("/docs/", get(docs::page))
+        .route("/docs/{*name}", get(docs::file))
         .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })
         .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
             ApiError::MethodNotAllowed(uri.path().to_owned())

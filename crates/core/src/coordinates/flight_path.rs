@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{LocalHorizon, PlanetFixed, longitude_and_latitude};
+use super::{LocalHorizon, PlanetFixed, longitude_and_latitude, wrap_to_half_turns};
 use crate::scalar::{Scalar, length};
 
 /// Place and motion relative to the rotating planet, against the geocentric local horizontal (the plane normal to the radius).
@@ -40,6 +40,14 @@ impl<S: Scalar> FlightPath<S> {
         let horizon = LocalHorizon::new(longitude, geocentric_latitude);
         let (speed, flight_path_angle, heading) = horizon.speed_and_angles(&state.velocity);
         Self { radius: length(&state.position), longitude, geocentric_latitude, speed, flight_path_angle, heading }
+    }
+}
+
+impl FlightPath<f64> {
+    /// The same state with longitude and heading in (-π, π].
+    #[must_use]
+    pub fn wrapped(self) -> Self {
+        Self { longitude: wrap_to_half_turns(self.longitude), heading: wrap_to_half_turns(self.heading), ..self }
     }
 }
 

@@ -48,8 +48,8 @@ pub struct NoElements;
 
 /// Eccentricities and sines of the inclination below this are noise: f64 keeps them to about 1e-15.
 const UNDEFINED: f64 = 1e-12;
-/// Below this ratio of semi-latus rectum to radius the elements keep fewer than eight digits of the state.
-const RECTILINEAR: f64 = 1e-8;
+/// Below this ratio of semi-latus rectum to radius the elements keep fewer than ten digits of the state.
+const RECTILINEAR: f64 = 1e-6;
 
 impl OrbitalElements {
     /// p, m.

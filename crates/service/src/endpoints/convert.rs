@@ -15,9 +15,6 @@ use crate::wire::json;
 /// Writes a state in every coordinate system.
 ///
 /// Each representation in the answer is itself a complete `initial_state`.
-///
-/// # Errors
-/// Every failure is a problem document (RFC 9457).
 #[utoipa::path(
     post,
     path = "/convert",

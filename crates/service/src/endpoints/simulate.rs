@@ -12,8 +12,7 @@ use crate::extract::Payload;
 use crate::format::Format;
 use crate::state::AppState;
 use crate::wire::json;
-use crate::wire::reader::Fault;
-use crate::wire::scenario::{Job, SimulateRequest};
+use crate::wire::scenario::{Job, SimulateRequest, Wanted};
 use crate::wire::trajectory::SimulateResponse;
 
 /// Flies a case.
@@ -21,9 +20,6 @@ use crate::wire::trajectory::SimulateResponse;
 /// Integrates the motion of a point mass from its initial state until it crosses the stop altitude downwards or the stop time
 /// is reached, and answers with the initial and final state, the peaks and the trajectory.
 /// `text/csv` has the trajectory alone: a header of the names, and a line an instant.
-///
-/// # Errors
-/// Every failure is a problem document (RFC 9457).
 #[utoipa::path(
     post,
     path = "/simulate",
@@ -39,15 +35,12 @@ use crate::wire::trajectory::SimulateResponse;
 )]
 pub async fn simulate(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json, Format::Csv])?;
+    let wanted = if format == Format::Csv { Wanted::Rows } else { Wanted::Answer };
     let row_limit = app.config.row_limit;
     let body = app
         .compute
         .run(move |interrupt| {
-            let job = Job::try_from_tree(json::parse(&body)?).map_err(ApiError::Invalid)?;
-            if format == Format::Csv && job.sampling.is_none() {
-                let detail = "must not be false where CSV is asked for, which is nothing but the trajectory";
-                return Err(ApiError::Invalid(vec![Fault::new("/output/trajectory", detail)]));
-            }
+            let job = Job::try_from_tree(json::parse(&body)?, wanted).map_err(ApiError::Invalid)?;
             let start = Instant::now();
             let flight = reentry::simulate::simulate(&job.scenario, interrupt)?;
             let elapsed = start.elapsed().as_secs_f64();

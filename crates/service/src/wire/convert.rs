@@ -120,7 +120,11 @@ impl ConvertResponse {
         let geodetic = CoreGeodetic::from_planet_fixed(&state, &planet.shape);
         Ok(Self {
             angle_unit: unit,
-            planet_relative: PlanetRelative::from_core(&FlightPath::from_planet_fixed(&state), unit, sidereal_time),
+            planet_relative: PlanetRelative::from_core(
+                &FlightPath::from_planet_fixed(&state).wrapped(),
+                unit,
+                sidereal_time,
+            ),
             geodetic: Geodetic::from_core(&geodetic, unit, sidereal_time),
             ecef: Ecef::from_core(&state, sidereal_time),
             eci: Eci::from_core(&inertial, sidereal_time),

@@ -5,20 +5,36 @@ use reentry::coordinates::earth_rotation_angle;
 use reentry::planet::Planet;
 use serde::Serialize;
 use serde_json::Value;
-use utoipa::ToSchema;
+use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, Type};
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
 
-/// The seconds since the inertial and the planet-fixed frame were aligned, as a number or as `"HH:MM:SS.s"`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(untagged)]
-#[schema(example = json!("00:03:20.6"))]
-pub enum SiderealTime {
-    /// Seconds, any finite number.
-    Seconds(f64),
-    /// `"HH:MM:SS.s"`; answers give seconds.
-    #[serde(skip)]
-    #[schema(value_type = String, pattern = r"^\d{2,}:[0-5]\d:[0-5]\d(\.\d+)?$")]
-    Clock(f64),
+/// The seconds since the inertial and the planet-fixed frame were aligned; requests may write them as `"HH:MM:SS.s"`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SiderealTime(pub f64);
+
+impl PartialSchema for SiderealTime {
+    fn schema() -> RefOr<Schema> {
+        let seconds = ObjectBuilder::new().schema_type(Type::Number).description(Some("Seconds; answers give these."));
+        let clock = ObjectBuilder::new()
+            .schema_type(Type::String)
+            .description(Some("`HH:MM:SS.s`, the hours with two digits or more."))
+            .pattern(Some(CLOCK_PATTERN));
+        OneOfBuilder::new()
+            .item(seconds)
+            .item(clock)
+            .description(Some("The time since the inertial and the planet-fixed frame were aligned."))
+            .into()
+    }
 }
+
+impl ToSchema for SiderealTime {}
+
+/// What [`SiderealTime::read`] takes for a clock.
+const CLOCK_PATTERN: &str = r"^[0-9]{2,}:[0-5][0-9]:[0-5][0-9](\.[0-9]+)?$";
+/// What [`Instant::read`] takes for the form of a time; the calendar is checked beyond it.
+pub const RFC3339_PATTERN: &str =
+    r"^[0-9]{4}-[0-9]{2}-[0-9]{2}[Tt][0-2][0-9]:[0-5][0-9]:[0-6][0-9](\.[0-9]+)?([Zz]|[+-][0-2][0-9]:[0-5][0-9])$";
 
 impl SiderealTime {
     /// Reads either form.
@@ -28,16 +44,10 @@ impl SiderealTime {
     pub fn read(value: &Value) -> Result<Self, String> {
         let fault = || format!("must be a number of seconds or \"HH:MM:SS.s\", got {value}");
         match value {
-            Value::Number(number) => number.as_f64().map(Self::Seconds).ok_or_else(fault),
-            Value::String(clock) => clock_seconds(clock).map(Self::Clock).ok_or_else(fault),
+            Value::Number(number) => number.as_f64().map(Self).ok_or_else(fault),
+            Value::String(clock) => clock_seconds(clock).map(Self).ok_or_else(fault),
             _ => Err(fault()),
         }
-    }
-
-    /// In seconds.
-    pub fn seconds(self) -> f64 {
-        let (Self::Seconds(seconds) | Self::Clock(seconds)) = self;
-        seconds
     }
 }
 
@@ -66,8 +76,8 @@ impl Instant {
     /// With what is wrong.
     pub fn read(value: &Value) -> Result<Self, String> {
         let fault = || format!("must be an RFC 3339 time such as \"2026-11-22T12:00:00Z\", got {value}");
-        let text = value.as_str().filter(|text| is_rfc3339(text)).ok_or_else(fault)?;
-        let epoch = Epoch::from_gregorian_str(text).map_err(|_| fault())?;
+        let text = value.as_str().and_then(plain_rfc3339).ok_or_else(fault)?;
+        let epoch = Epoch::from_gregorian_str(&text).map_err(|_| fault())?;
         let noon_2000 = Epoch::from_gregorian_utc(2000, 1, 1, 12, 0, 0, 0);
         let elapsed = epoch.to_utc_duration() - noon_2000.to_utc_duration();
         Ok(Self { days: elapsed.to_unit(Unit::Day) })
@@ -82,22 +92,31 @@ impl Instant {
     }
 }
 
-/// Whether the text has the form of RFC 3339: `YYYY-MM-DDThh:mm:ss[.s](Z|±hh:mm)`.
-fn is_rfc3339(text: &str) -> bool {
-    let bytes = text.as_bytes();
-    let matches = |pattern: &[u8], bytes: &[u8]| {
-        pattern.len() == bytes.len()
-            && pattern.iter().zip(bytes).all(|(p, b)| if *p == b'0' { b.is_ascii_digit() } else { p == b })
-    };
-    let Some((date, rest)) = bytes.split_at_checked(19) else { return false };
-    let zone_at = rest.iter().position(|byte| !byte.is_ascii_digit() && *byte != b'.').unwrap_or(rest.len());
+/// An RFC 3339 time in the form that `hifitime` reads: capital letters, and at most nine digits of a second,
+/// since a nanosecond turns the Earth by no more than 1e-13 rad. None if it does not have the form of RFC 3339.
+fn plain_rfc3339(text: &str) -> Option<String> {
+    let text = text.to_ascii_uppercase();
+    let (date_and_time, rest) = text.split_at_checked(19)?;
+    let zone_at = rest.find(|c: char| !c.is_ascii_digit() && c != '.')?;
     let (fraction, zone) = rest.split_at(zone_at);
-    let sound_fraction = match fraction {
-        [] => true,
-        [b'.', digits @ ..] => !digits.is_empty() && digits.iter().all(u8::is_ascii_digit),
-        _ => false,
-    };
-    matches(b"0000-00-00T00:00:00", date)
-        && sound_fraction
-        && (zone == b"Z" || matches(b"+00:00", zone) || matches(b"-00:00", zone))
+    let digits = fraction.strip_prefix('.').unwrap_or("0");
+    let sound = has_form(date_and_time, "0000-00-00T00:00:00")
+        && !digits.is_empty()
+        && digits.bytes().all(|byte| byte.is_ascii_digit())
+        && (zone == "Z" || is_offset(zone));
+    let fraction = &fraction[..fraction.len().min(10)];
+    sound.then(|| format!("{date_and_time}{fraction}{zone}"))
+}
+
+/// `±hh:mm`, within a day.
+fn is_offset(zone: &str) -> bool {
+    let number = |at: std::ops::Range<usize>| zone.get(at).and_then(|text| text.parse::<u8>().ok());
+    let form = has_form(zone, "+00:00") || has_form(zone, "-00:00");
+    form && number(1..3).is_some_and(|hours| hours < 24) && number(4..6).is_some_and(|minutes| minutes < 60)
+}
+
+/// Whether the text is like the pattern, in which 0 stands for any digit.
+fn has_form(text: &str, pattern: &str) -> bool {
+    let like = |(byte, pattern): (u8, u8)| if pattern == b'0' { byte.is_ascii_digit() } else { byte == pattern };
+    text.len() == pattern.len() && text.bytes().zip(pattern.bytes()).all(like)
 }

@@ -41,13 +41,13 @@ pub struct Planet {
     #[schema(required = false, default = "ellipsoid")]
     pub shape: Shape,
     /// Acceleration of gravity times the squared radius, m³/s²; of a custom planet.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0, maximum = 1e25)]
+    #[schema(required = false, value_type = f64, minimum = 1e-6, maximum = 1e25)]
     pub gravitational_parameter: Option<f64>,
     /// m; of a custom planet.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0, maximum = 1e12)]
+    #[schema(required = false, value_type = f64, minimum = 1, maximum = 1e12)]
     pub equatorial_radius: Option<f64>,
-    /// m; of a custom planet.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0, maximum = 1e12)]
+    /// Between 0.1 and 10 times the equatorial radius, m; of a custom planet.
+    #[schema(required = false, value_type = f64, minimum = 1, maximum = 1e12)]
     pub polar_radius: Option<f64>,
     /// Relative to inertial space, positive to the east, rad/s whatever the `angle_unit`; of a custom planet; 0 is allowed.
     #[schema(required = false, value_type = f64, minimum = -1, maximum = 1)]
@@ -91,8 +91,8 @@ impl Planet {
 
     fn read_custom(object: &mut Object) -> Option<CorePlanet> {
         let gravitational_parameter = object.number("gravitational_parameter", Bound::GRAVITATIONAL_PARAMETER);
-        let equatorial_radius = object.number("equatorial_radius", Bound::RADIUS);
-        let polar_radius = object.number("polar_radius", Bound::RADIUS);
+        let equatorial_radius = object.number("equatorial_radius", Bound::PLANET_RADIUS);
+        let polar_radius = object.number("polar_radius", Bound::PLANET_RADIUS);
         let rotation_rate = object.number("rotation_rate", Bound::ROTATION_RATE);
         Some(CorePlanet {
             shape: CoreShape::Ellipsoid { equatorial_radius: equatorial_radius?, polar_radius: polar_radius? },

@@ -286,8 +286,12 @@ impl Object<'_> {
             return;
         }
         let unknown: Vec<_> = self.map.keys().filter(|name| !self.known.contains(&name.as_str())).collect();
-        let mut known = self.known.clone();
-        known.dedup();
+        let mut known: Vec<_> = Vec::new();
+        for name in &self.known {
+            if !known.contains(name) {
+                known.push(*name);
+            }
+        }
         let known = known.join(", ");
         for name in unknown {
             let escaped = name.replace('~', "~0").replace('/', "~1");

@@ -105,6 +105,15 @@ pub struct Solver {
     pub relative_tolerance: f64,
 }
 
+/// What the answer is to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Everything.
+    Answer,
+    /// The trajectory alone.
+    Rows,
+}
+
 /// A sound request, ready to fly.
 #[derive(Debug)]
 pub struct Job {
@@ -123,10 +132,19 @@ impl Job {
     ///
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
-    pub fn try_from_tree(mut tree: Value) -> Result<Self, Vec<Fault>> {
+    pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
         let request = reader::read(&mut tree, SimulateRequest::read)?;
-        let scenario = request.try_into_scenario()?;
         let sampling = request.output.sampling();
+        let rowless = (wanted == Wanted::Rows && sampling.is_none()).then(|| {
+            let detail = "must not be false where CSV is asked for, which is nothing but the trajectory";
+            Fault::new("/output/trajectory", detail)
+        });
+        let scenario = match (request.try_into_scenario(), rowless) {
+            (Ok(scenario), None) => scenario,
+            (scenario, rowless) => {
+                return Err(scenario.err().into_iter().flatten().chain(rowless).collect());
+            }
+        };
         let echo = request.echo.then_some(tree);
         Ok(Self { scenario, sampling, request, echo })
     }

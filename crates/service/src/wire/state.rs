@@ -79,7 +79,7 @@ impl State {
     /// from the epoch where the state does not give it.
     ///
     /// # Errors
-    /// With what is wrong across its fields.
+    /// With everything that is wrong across its fields.
     pub fn at(
         &self,
         epoch: Option<Instant>,
@@ -87,40 +87,27 @@ impl State {
         unit: AngleUnit,
         planet: &Planet,
     ) -> Result<(PlanetFixed<f64>, f64), Vec<Fault>> {
+        let mut faults = match self {
+            Self::PlanetRelative(state) => state.faults(pointer, unit, planet),
+            Self::OrbitalElements(state) => state.faults(pointer, unit),
+            Self::Geodetic(_) | Self::Ecef(_) | Self::Eci(_) => Vec::new(),
+        };
         let sidereal_time = match (self.sidereal_time(), epoch) {
-            (Some(given), _) => given.seconds(),
-            (None, None) => 0.0,
-            (None, Some(epoch)) => epoch.sidereal_time(planet).ok_or_else(|| {
-                let detail = "gives no sidereal time on a planet that does not rotate; give sidereal_time in the state";
-                vec![Fault::new("/epoch", detail)]
-            })?,
+            (Some(SiderealTime(seconds)), _) => Some(seconds),
+            (None, None) => Some(0.0),
+            (None, Some(epoch)) => epoch.sidereal_time(planet),
         };
-        Ok((self.try_into_planet_fixed(pointer, unit, planet, sidereal_time)?, sidereal_time))
-    }
-
-    /// The planet-fixed position and velocity, `sidereal_time` seconds after the frames were aligned.
-    ///
-    /// # Errors
-    /// With what is wrong across its fields.
-    fn try_into_planet_fixed(
-        &self,
-        pointer: &str,
-        unit: AngleUnit,
-        planet: &Planet,
-        sidereal_time: f64,
-    ) -> Result<PlanetFixed<f64>, Vec<Fault>> {
-        let own = match self {
-            Self::PlanetRelative(state) => state.fault(pointer, unit, planet),
-            Self::OrbitalElements(state) => state.fault(pointer, unit),
-            Self::Geodetic(_) | Self::Ecef(_) | Self::Eci(_) => None,
+        let Some(sidereal_time) = sidereal_time else {
+            let detail = "gives no sidereal time on a planet that does not rotate; give sidereal_time in the state";
+            faults.push(Fault::new("/epoch", detail));
+            return Err(faults);
         };
-        if let Some(fault) = own {
-            return Err(vec![fault]);
+        if !faults.is_empty() {
+            return Err(faults);
         }
         let state = self.to_planet_fixed(unit, planet, sidereal_time);
-        let faults = state_faults(&state);
-        let faults: Vec<_> = faults.iter().map(|fault| Fault::new(pointer, fault.to_string())).collect();
-        if faults.is_empty() { Ok(state) } else { Err(faults) }
+        let faults: Vec<_> = state_faults(&state).iter().map(|fault| Fault::new(pointer, fault.to_string())).collect();
+        if faults.is_empty() { Ok((state, sidereal_time)) } else { Err(faults) }
     }
 
     fn to_planet_fixed(&self, unit: AngleUnit, planet: &Planet, sidereal_time: f64) -> PlanetFixed<f64> {

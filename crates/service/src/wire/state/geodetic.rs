@@ -81,7 +81,7 @@ impl Geodetic {
             speed: state.speed,
             flight_path_angle: unit.from_radians(state.flight_path_angle),
             azimuth: unit.turn_from_radians(state.azimuth),
-            sidereal_time: Some(SiderealTime::Seconds(sidereal_time)),
+            sidereal_time: Some(SiderealTime(sidereal_time)),
         }
     }
 }

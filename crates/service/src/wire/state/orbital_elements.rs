@@ -69,27 +69,28 @@ impl OrbitalElements {
     }
 
     /// The orbit's size must go with its eccentricity, and the vehicle must be on it.
-    pub(super) fn fault(&self, pointer: &str, unit: AngleUnit) -> Option<Fault> {
+    pub(super) fn faults(&self, pointer: &str, unit: AngleUnit) -> Vec<Fault> {
         let e = self.eccentricity;
-        if let Some(a) = self.semi_major_axis {
-            let detail = if e.total_cmp(&1.0).is_eq() {
-                "a parabola (eccentricity 1) has no semi-major axis; give semi_latus_rectum in its place".to_owned()
-            } else if a * (1.0 - e) <= 0.0 {
-                let sign = if e < 1.0 { "positive" } else { "negative" };
-                format!("must be {sign} where the eccentricity is {e:?}, got {a:?}")
-            } else {
-                String::new()
-            };
-            if !detail.is_empty() {
-                return Some(Fault::new(format!("{pointer}/semi_major_axis"), detail));
+        let mut faults = Vec::new();
+        match self.semi_major_axis {
+            Some(_) if e.total_cmp(&1.0).is_eq() => {
+                let detail = "a parabola (eccentricity 1) has no semi-major axis; give semi_latus_rectum in its place";
+                faults.push(Fault::new(format!("{pointer}/semi_major_axis"), detail));
             }
+            Some(a) if a * (1.0 - e) <= 0.0 => {
+                let sign = if e < 1.0 { "positive" } else { "negative" };
+                let detail = format!("must be {sign} where the eccentricity is {e}, got {a}");
+                faults.push(Fault::new(format!("{pointer}/semi_major_axis"), detail));
+            }
+            _ => {}
         }
         let reach = 1.0 + e * unit.to_radians(self.true_anomaly).cos();
-        (reach <= 0.0).then(|| {
+        if reach <= 0.0 {
             let detail =
-                format!("lies beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach:?}");
-            Fault::new(format!("{pointer}/true_anomaly"), detail)
-        })
+                format!("lies beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach}");
+            faults.push(Fault::new(format!("{pointer}/true_anomaly"), detail));
+        }
+        faults
     }
 
     pub(super) fn to_core(&self, unit: AngleUnit) -> coordinates::OrbitalElements {
@@ -122,7 +123,7 @@ impl OrbitalElements {
             raan: unit.turn_from_radians(elements.raan),
             argument_of_periapsis: unit.turn_from_radians(elements.argument_of_periapsis),
             true_anomaly: unit.turn_from_radians(elements.true_anomaly),
-            sidereal_time: Some(SiderealTime::Seconds(sidereal_time)),
+            sidereal_time: Some(SiderealTime(sidereal_time)),
         }
     }
 }

@@ -70,13 +70,13 @@ impl PlanetRelative {
         })
     }
 
-    pub(super) fn fault(&self, pointer: &str, unit: AngleUnit, planet: &Planet) -> Option<Fault> {
+    /// The altitude must not reach down to the centre.
+    pub(super) fn faults(&self, pointer: &str, unit: AngleUnit, planet: &Planet) -> Vec<Fault> {
         let radius = self.to_core(unit, planet).radius;
         let surface = radius - self.altitude.unwrap_or(0.0);
-        (radius <= 0.0).then(|| {
-            let detail = format!("must lie above the planet's centre, {surface:.0} m below the surface here");
-            Fault::new(format!("{pointer}/altitude"), detail)
-        })
+        let detail = || format!("must lie above the planet's centre, {surface:.0} m below the surface here");
+        let fault = (radius <= 0.0).then(|| Fault::new(format!("{pointer}/altitude"), detail()));
+        fault.into_iter().collect()
     }
 
     pub(super) fn to_core(&self, unit: AngleUnit, planet: &Planet) -> FlightPath<f64> {
@@ -105,7 +105,7 @@ impl PlanetRelative {
             speed: state.speed,
             flight_path_angle: unit.from_radians(state.flight_path_angle),
             heading: unit.from_radians(state.heading),
-            sidereal_time: Some(SiderealTime::Seconds(sidereal_time)),
+            sidereal_time: Some(SiderealTime(sidereal_time)),
         }
     }
 }

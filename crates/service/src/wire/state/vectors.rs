@@ -17,7 +17,7 @@ pub struct Ecef {
     pub kind: &'static str,
     /// Position [x, y, z], m, each within ±1e12.
     pub position: [f64; 3],
-    /// Velocity [x, y, z] relative to the rotating planet, m/s.
+    /// Velocity [x, y, z] relative to the rotating planet, m/s; its magnitude at most 1e6.
     pub velocity: [f64; 3],
     /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -32,7 +32,7 @@ pub struct Eci {
     pub kind: &'static str,
     /// Position [x, y, z], m, each within ±1e12.
     pub position: [f64; 3],
-    /// Inertial velocity [x, y, z], m/s.
+    /// Inertial velocity [x, y, z], m/s; relative to the rotating planet at most 1e6.
     pub velocity: [f64; 3],
     /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,7 +41,7 @@ pub struct Eci {
 
 impl Ecef {
     pub(super) fn read(object: &mut Object) -> Option<Self> {
-        let (position, velocity, sidereal_time) = vectors(object);
+        let (position, velocity, sidereal_time) = vectors(object, Bound::VELOCITY);
         Some(Self { kind: "ecef", position: position?, velocity: velocity?, sidereal_time })
     }
 
@@ -51,14 +51,14 @@ impl Ecef {
             kind: "ecef",
             position: state.position.into(),
             velocity: state.velocity.into(),
-            sidereal_time: Some(SiderealTime::Seconds(sidereal_time)),
+            sidereal_time: Some(SiderealTime(sidereal_time)),
         }
     }
 }
 
 impl Eci {
     pub(super) fn read(object: &mut Object) -> Option<Self> {
-        let (position, velocity, sidereal_time) = vectors(object);
+        let (position, velocity, sidereal_time) = vectors(object, Bound::FINITE);
         Some(Self { kind: "eci", position: position?, velocity: velocity?, sidereal_time })
     }
 
@@ -68,14 +68,14 @@ impl Eci {
             kind: "eci",
             position: state.position.into(),
             velocity: state.velocity.into(),
-            sidereal_time: Some(SiderealTime::Seconds(sidereal_time)),
+            sidereal_time: Some(SiderealTime(sidereal_time)),
         }
     }
 }
 
 /// Position, velocity and sidereal time.
-fn vectors(object: &mut Object) -> (Option<[f64; 3]>, Option<[f64; 3]>, Option<SiderealTime>) {
+fn vectors(object: &mut Object, velocity: Bound) -> (Option<[f64; 3]>, Option<[f64; 3]>, Option<SiderealTime>) {
     let position = object.vector("position", Bound::DISTANCE);
-    let velocity = object.vector("velocity", Bound::FINITE);
+    let velocity = object.vector("velocity", velocity);
     (position, velocity, sidereal_time(object))
 }
