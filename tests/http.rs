@@ -1,3 +1,19 @@
-//! The service over HTTP, one file an endpoint.
+//! The service over HTTP: what it refuses, then what it answers.
+#![allow(clippy::unwrap_used, reason = "a test stops where it meets what it does not expect, its helpers included")]
 
+pub(crate) mod fields;
+mod refusal;
+pub(crate) mod requests;
+
+mod broken_json;
+mod cross_field;
+mod faults;
+mod problems;
+mod protocol;
+mod ranges;
+
+mod convert;
+mod output;
+mod sidereal_time;
 mod simulate;
+mod surface;

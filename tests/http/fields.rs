@@ -1,0 +1,285 @@
+//! Every field of the two requests: where it stands, what it holds, and what it may be (the table of the API's contract).
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use serde_json::{Value, json};
+
+use super::requests::{KINDS, conversion, flight, with};
+
+/// A field of a request.
+pub(crate) struct Field {
+    /// The endpoint.
+    pub(crate) path: &'static str,
+    /// A good request that has the field.
+    pub(crate) request: Value,
+    /// The field.
+    pub(crate) pointer: String,
+    /// Whether it may be left out.
+    pub(crate) need: Need,
+    /// What it holds.
+    pub(crate) kind: Kind,
+}
+
+/// Whether a field may be left out.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Need {
+    Required,
+    Optional,
+    /// Exactly one of several is given.
+    Alternative,
+}
+
+/// What a field holds.
+#[derive(Clone, Copy)]
+pub(crate) enum Kind {
+    Number(Range),
+    /// A number in the request's unit of angles; the range is in radians.
+    Angle(Range),
+    /// A whole number.
+    Whole,
+    /// One of some names.
+    Name,
+    Text,
+    Boolean,
+    /// `false` and nothing else.
+    False,
+    Object,
+    /// Three numbers.
+    Vector,
+    Numbers,
+    /// An RFC 3339 time.
+    Instant,
+    /// Seconds or `"HH:MM:SS.s"`.
+    SiderealTime,
+}
+
+/// The values that a number may have.
+#[derive(Clone, Copy)]
+pub(crate) struct Range {
+    pub(crate) low: Limit,
+    pub(crate) high: Limit,
+}
+
+/// An end of a range.
+#[derive(Clone, Copy)]
+pub(crate) enum Limit {
+    /// Belongs to the range.
+    Closed(f64),
+    /// Does not belong to it.
+    Open(f64),
+    Unlimited,
+}
+
+use Kind::{Angle, Boolean, False, Instant, Name, Number, Numbers, Object, SiderealTime, Text, Vector, Whole};
+use Limit::{Closed, Open, Unlimited};
+use Need::{Alternative, Optional, Required};
+
+const FINITE: Range = Range { low: Unlimited, high: Unlimited };
+const POSITIVE: Range = Range { low: Open(0.0), high: Unlimited };
+const NOT_NEGATIVE: Range = Range { low: Closed(0.0), high: Unlimited };
+const SPEED: Range = between(0.0, 1e6);
+const DISTANCE: Range = between(-1e12, 1e12);
+const RADIUS: Range = Range { low: Open(0.0), high: Closed(1e12) };
+const PLANET_RADIUS: Range = between(1.0, 1e12);
+const QUARTER: Range = between(-FRAC_PI_2, FRAC_PI_2);
+const HALF: Range = between(0.0, PI);
+const TURN: Range = between(-TAU, TAU);
+
+const fn between(low: f64, high: f64) -> Range {
+    Range { low: Closed(low), high: Closed(high) }
+}
+
+type Row = (&'static str, Need, Kind);
+
+const SHARED: [Row; 9] = [
+    ("/angle_unit", Optional, Name),
+    ("/echo", Optional, Boolean),
+    ("/epoch", Optional, Instant),
+    ("/planet", Optional, Object),
+    ("/planet/shape", Optional, Name),
+    ("/planet/gravitational_parameter", Required, Number(between(1e-6, 1e25))),
+    ("/planet/equatorial_radius", Required, Number(PLANET_RADIUS)),
+    ("/planet/polar_radius", Required, Number(PLANET_RADIUS)),
+    ("/planet/rotation_rate", Required, Number(between(-1.0, 1.0))),
+];
+
+const CASE: [Row; 19] = [
+    ("/name", Optional, Text),
+    ("/atmosphere", Optional, Object),
+    ("/atmosphere/type", Required, Name),
+    ("/atmosphere/surface_density", Optional, Number(NOT_NEGATIVE)),
+    ("/atmosphere/scale_height", Optional, Number(POSITIVE)),
+    ("/vehicle", Required, Object),
+    ("/vehicle/mass", Required, Number(POSITIVE)),
+    ("/vehicle/reference_area", Required, Number(NOT_NEGATIVE)),
+    ("/vehicle/aerodynamics", Required, Object),
+    ("/vehicle/aerodynamics/type", Required, Name),
+    ("/vehicle/aerodynamics/lift_coefficient", Optional, Number(FINITE)),
+    ("/vehicle/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
+    ("/control", Optional, Object),
+    ("/control/bank_angle", Optional, Angle(TURN)),
+    ("/stop", Optional, Object),
+    ("/stop/altitude", Optional, Number(DISTANCE)),
+    ("/stop/time", Optional, Number(Range { low: Open(0.0), high: Closed(1e9) })),
+    ("/output", Optional, Object),
+    ("/solver", Optional, Object),
+];
+
+const SOLVER: [Row; 2] =
+    [("/solver/formulation", Optional, Name), ("/solver/relative_tolerance", Optional, Number(between(1e-14, 1e-3)))];
+
+const PLANET_RELATIVE: [Row; 6] = [
+    ("/altitude", Alternative, Number(DISTANCE)),
+    ("/longitude", Required, Angle(TURN)),
+    ("/geocentric_latitude", Required, Angle(QUARTER)),
+    ("/speed", Required, Number(SPEED)),
+    ("/flight_path_angle", Required, Angle(QUARTER)),
+    ("/heading", Required, Angle(TURN)),
+];
+
+const GEODETIC: [Row; 6] = [
+    ("/geodetic_altitude", Required, Number(DISTANCE)),
+    ("/longitude", Required, Angle(TURN)),
+    ("/geodetic_latitude", Required, Angle(QUARTER)),
+    ("/speed", Required, Number(SPEED)),
+    ("/flight_path_angle", Required, Angle(QUARTER)),
+    ("/azimuth", Required, Angle(TURN)),
+];
+
+const VECTORS: [Row; 2] = [("/position", Required, Vector), ("/velocity", Required, Vector)];
+
+const ORBITAL_ELEMENTS: [Row; 6] = [
+    ("/semi_major_axis", Alternative, Number(FINITE)),
+    ("/eccentricity", Required, Number(NOT_NEGATIVE)),
+    ("/inclination", Required, Angle(HALF)),
+    ("/raan", Required, Angle(TURN)),
+    ("/argument_of_periapsis", Required, Angle(TURN)),
+    ("/true_anomaly", Required, Angle(TURN)),
+];
+
+/// Every field of both requests, with every kind of state.
+pub(crate) fn fields() -> Vec<Field> {
+    let mut fields = Vec::new();
+    let mut add = |path, request: &Value, place: &str, rows: &[Row]| {
+        fields.extend(rows.iter().map(|(name, need, kind)| {
+            let pointer = format!("{place}{name}");
+            assert!(request.pointer(&pointer).is_some(), "the good request has no {pointer}");
+            Field { path, request: request.clone(), pointer, need: *need, kind: *kind }
+        }));
+    };
+    add("/simulate", &flight("ecef"), "", &SHARED);
+    add("/simulate", &flight("ecef"), "", &CASE);
+    add("/simulate", &flight("ecef"), "", &SOLVER);
+    add("/convert", &conversion("ecef"), "", &SHARED);
+    let named = |request| with(&request, "/planet", json!({"model": "earth_jameson_text"}));
+    add("/simulate", &named(flight("eci")), "", &[("/planet/model", Optional, Name)]);
+    add("/convert", &named(conversion("eci")), "", &[("/planet/model", Optional, Name)]);
+
+    for kind in KINDS {
+        for (path, request, state) in
+            [("/simulate", flight(kind), "/initial_state"), ("/convert", conversion(kind), "/state")]
+        {
+            let own = ["/type", "/sidereal_time"];
+            add(path, &request, state, &[("", Required, Object), (own[0], Required, Name)]);
+            add(path, &request, state, &[(own[1], Optional, SiderealTime)]);
+            let rows: &[Row] = match kind {
+                "planet_relative" => &PLANET_RELATIVE,
+                "geodetic" => &GEODETIC,
+                "orbital_elements" => &ORBITAL_ELEMENTS,
+                _ => &VECTORS,
+            };
+            add(path, &request, state, rows);
+            let alternative = |name: &str, value: f64| {
+                let request = super::requests::without(&request, &format!("{state}{}", rows[0].0));
+                with(&request, &format!("{state}{name}"), value)
+            };
+            if kind == "planet_relative" {
+                add(path, &alternative("/radius", 6.5e6), state, &[("/radius", Alternative, Number(RADIUS))]);
+            }
+            if kind == "orbital_elements" {
+                let name = "/semi_latus_rectum";
+                add(path, &alternative(name, 6.5e6), state, &[(name, Alternative, Number(POSITIVE))]);
+            }
+        }
+    }
+    for (name, value, kind) in [
+        ("/samples_per_step", json!(2), Whole),
+        ("/interval", json!(0.5), Number(POSITIVE)),
+        ("/count", json!(3), Whole),
+        ("/times", json!([0.2, 0.4]), Numbers),
+        ("/trajectory", json!(false), False),
+    ] {
+        let request = with(&with(&flight("geodetic"), "/output", json!({})), &format!("/output{name}"), value);
+        add("/simulate", &request, "/output", &[(name, Alternative, kind)]);
+    }
+    fields
+}
+
+impl Kind {
+    /// Values of types that the field does not hold.
+    pub(crate) fn mistyped(self) -> Vec<Value> {
+        let mut wrong = vec![json!(null)];
+        let number = matches!(self, Number(_) | Angle(_) | Whole | SiderealTime);
+        if !number {
+            wrong.push(json!(13));
+        }
+        if !matches!(self, Text) {
+            wrong.extend([json!("13"), json!("")]);
+        }
+        if !matches!(self, Boolean) {
+            wrong.push(json!(true));
+        }
+        if !matches!(self, Boolean | False) {
+            wrong.push(json!(false));
+        }
+        if !matches!(self, Vector | Numbers) {
+            wrong.push(json!([1, 2, 3]));
+        }
+        if !matches!(self, Object) {
+            wrong.push(json!({"value": 1}));
+        }
+        wrong
+    }
+}
+
+impl Range {
+    /// The values just outside the range.
+    pub(crate) fn beyond(self) -> Vec<f64> {
+        let below = match self.low {
+            Closed(limit) => Some(limit.next_down()),
+            Open(limit) => Some(limit),
+            Unlimited => None,
+        };
+        let above = match self.high {
+            Closed(limit) => Some(limit.next_up()),
+            Open(limit) => Some(limit),
+            Unlimited => None,
+        };
+        below.into_iter().chain(above).collect()
+    }
+
+    /// The first and the last value in the range.
+    pub(crate) fn ends(self) -> [f64; 2] {
+        let least = match self.low {
+            Closed(limit) => limit,
+            Open(limit) => limit.next_up(),
+            Unlimited => f64::MIN,
+        };
+        let greatest = match self.high {
+            Closed(limit) => limit,
+            Open(limit) => limit.next_down(),
+            Unlimited => f64::MAX,
+        };
+        [least, greatest]
+    }
+
+    /// The same range of an angle in degrees.
+    pub(crate) fn in_degrees(self) -> Self {
+        let degrees = |limit| match limit {
+            // The limits are quarter turns.
+            Closed(limit) => Closed((limit / FRAC_PI_2).round() * 90.0),
+            other => other,
+        };
+        Self { low: degrees(self.low), high: degrees(self.high) }
+    }
+}

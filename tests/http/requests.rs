@@ -1,0 +1,101 @@
+//! Good requests, to send as they are or to spoil in one place.
+
+use serde_json::{Value, json};
+
+/// The five kinds of state.
+pub(crate) const KINDS: [&str; 5] = ["planet_relative", "geodetic", "ecef", "eci", "orbital_elements"];
+
+/// A state of the given kind, with every field but the second of its alternatives.
+pub(crate) fn state(kind: &str) -> Value {
+    match kind {
+        "planet_relative" => json!({"type": kind, "altitude": 9e4, "longitude": -0.7, "geocentric_latitude": 0.4,
+            "speed": 7000, "flight_path_angle": -0.05, "heading": 0.5, "sidereal_time": 100}),
+        "geodetic" => json!({"type": kind, "geodetic_altitude": 9e4, "longitude": 0.7, "geodetic_latitude": -0.4,
+            "speed": 7000, "flight_path_angle": -0.05, "azimuth": 1.5, "sidereal_time": 100}),
+        "ecef" | "eci" => {
+            json!({"type": kind, "position": [4e6, -3e6, 4.1e6], "velocity": [4e3, 6e3, 200], "sidereal_time": 100})
+        }
+        "orbital_elements" => json!({"type": kind, "semi_major_axis": 6.5e6, "eccentricity": 0.01, "inclination": 1.1,
+            "raan": 2.1, "argument_of_periapsis": 0.3, "true_anomaly": 3.5, "sidereal_time": 100}),
+        _ => panic!("no such kind of state: {kind}"),
+    }
+}
+
+/// A second of flight, with every field given that may be given beside the others.
+pub(crate) fn flight(kind: &str) -> Value {
+    json!({
+        "name": "a second of flight",
+        "angle_unit": "rad",
+        "echo": false,
+        "epoch": "2026-11-22T12:00:00Z",
+        "planet": planet(),
+        "atmosphere": {"type": "exponential", "surface_density": 1.2, "scale_height": 7000},
+        "vehicle": {
+            "mass": 700,
+            "reference_area": 0.2,
+            "aerodynamics": {"type": "constant", "lift_coefficient": 0.2, "drag_coefficient": 0.2},
+        },
+        "control": {"bank_angle": 0.8},
+        "initial_state": state(kind),
+        "stop": {"altitude": -1e4, "time": 1},
+        "output": {"count": 3},
+        "solver": {"formulation": "cartesian", "relative_tolerance": 1e-9},
+    })
+}
+
+/// A conversion, with every field given that may be given beside the others.
+pub(crate) fn conversion(kind: &str) -> Value {
+    json!({
+        "angle_unit": "rad",
+        "echo": false,
+        "epoch": "2026-11-22T12:00:00Z",
+        "planet": planet(),
+        "state": state(kind),
+    })
+}
+
+/// The least that can be flown: a capsule from 120 km.
+pub(crate) fn capsule() -> Value {
+    json!({
+        "vehicle": {
+            "mass": 5500, "reference_area": 12, "aerodynamics": {"type": "constant", "drag_coefficient": 1.3},
+        },
+        "initial_state": {
+            "type": "planet_relative", "altitude": 120_000, "longitude": -0.7, "geocentric_latitude": 0.17,
+            "speed": 7500, "flight_path_angle": -0.05, "heading": 0.5,
+        },
+    })
+}
+
+fn planet() -> Value {
+    json!({"model": "custom", "shape": "ellipsoid", "gravitational_parameter": 3.986e14, "equatorial_radius": 6.378e6,
+        "polar_radius": 6.357e6, "rotation_rate": 7.3e-5})
+}
+
+/// The request with the value at the pointer, whose parent must be there.
+pub(crate) fn with(request: &Value, pointer: &str, value: impl Into<Value>) -> Value {
+    let mut request = request.clone();
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    match request.pointer_mut(parent) {
+        Some(Value::Object(map)) => {
+            map.insert(name.to_owned(), value.into());
+        }
+        Some(Value::Array(array)) => array[name.parse::<usize>().unwrap()] = value.into(),
+        _ => panic!("there is nothing at {parent}"),
+    }
+    request
+}
+
+/// The request with the values of all the pointers, in turn.
+pub(crate) fn with_all<const N: usize>(request: &Value, changes: [(&str, Value); N]) -> Value {
+    changes.into_iter().fold(request.clone(), |request, (pointer, value)| with(&request, pointer, value))
+}
+
+/// The request without the field at the pointer, which must be there.
+pub(crate) fn without(request: &Value, pointer: &str) -> Value {
+    let mut request = request.clone();
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    let removed = request.pointer_mut(parent).and_then(Value::as_object_mut).and_then(|map| map.shift_remove(name));
+    assert!(removed.is_some(), "there is nothing at {pointer}");
+    request
+}

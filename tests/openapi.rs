@@ -1,0 +1,385 @@
+//! The OpenAPI document: committed as the service gives it, and exactly as strict as the service is.
+#![allow(clippy::unwrap_used, reason = "a test stops where it meets what it does not expect, its helpers included")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use axum::http::StatusCode;
+use jsonschema::Validator;
+use reentry_service::document;
+use reentry_tests::cases::thesis_cases;
+use reentry_tests::service::Service;
+use serde_json::{Value, json};
+
+use crate::http::fields::{Kind, Need, fields};
+use crate::http::requests::{KINDS, conversion, flight, with, with_all, without};
+
+/// A validator of one of the document's schemas; OpenAPI 3.1 speaks JSON Schema 2020-12.
+fn schema(name: &str) -> Validator {
+    let root = json!({"$ref": format!("#/components/schemas/{name}"), "components": document()["components"]});
+    jsonschema::draft202012::options().should_validate_formats(true).build(&root).unwrap()
+}
+
+/// Fails unless the value is valid.
+fn is_valid(schema: &Validator, value: &Value, what: &str) {
+    let faults: Vec<_> = schema.iter_errors(value).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{what} is not valid: {}", faults.join("; "));
+}
+
+/// The requests of an endpoint that the project shows: the document's examples and the cases of the thesis.
+fn shown(path: &str) -> Vec<(String, Value)> {
+    let document = document();
+    let examples = document["paths"][path]["post"]["requestBody"]["content"]["application/json"]["examples"].clone();
+    let examples = examples.as_object().unwrap().iter().map(|(name, example)| (name.clone(), example["value"].clone()));
+    let thesis = thesis_cases().into_iter().map(|case| (format!("{} of {}", case.name, case.model), case.request));
+    if path == "/simulate" { examples.chain(thesis).collect() } else { examples.collect() }
+}
+
+/// The same, and requests with every field.
+fn good_requests(path: &str) -> Vec<(String, Value)> {
+    let every_field = if path == "/simulate" { flight } else { conversion };
+    let complete = KINDS.map(|kind| (format!("a complete {kind}"), every_field(kind)));
+    shown(path).into_iter().chain(complete).collect()
+}
+
+const ENDPOINTS: [(&str, &str, &str); 2] =
+    [("/simulate", "SimulateRequest", "SimulateResponse"), ("/convert", "ConvertRequest", "ConvertResponse")];
+
+#[test]
+fn the_committed_document_is_that_of_the_service() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../openapi/openapi.json");
+    let committed = fs::read_to_string(file).unwrap();
+    assert!(committed == format!("{:#}\n", document()), "openapi/openapi.json is out of date: run `make openapi`");
+}
+
+#[test]
+fn good_requests_and_every_example_file_are_valid() {
+    for (path, request, _) in ENDPOINTS {
+        let schema = schema(request);
+        for (name, request) in good_requests(path) {
+            is_valid(&schema, &request, &name);
+        }
+    }
+    let count = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../openapi/examples")).unwrap().count();
+    assert_eq!(shown("/simulate").len() + shown("/convert").len(), count + 21, "an example is not in the document");
+}
+
+#[test]
+fn every_way_of_output_and_every_optional_field_left_out_is_valid() {
+    for (path, request, _) in ENDPOINTS {
+        let schema = schema(request);
+        for field in fields().iter().filter(|field| field.path == path) {
+            is_valid(&schema, &field.request, &field.pointer);
+            if field.need == Need::Optional {
+                is_valid(&schema, &without(&field.request, &field.pointer), &format!("without {}", field.pointer));
+            }
+        }
+    }
+}
+
+/// Sorts what the schema accepts and the service refuses, or the other way round.
+struct Agreement {
+    service: Service,
+    schemas: [(&'static str, Validator); 2],
+    count: usize,
+    differences: BTreeSet<String>,
+}
+
+impl Agreement {
+    fn new() -> Self {
+        let schemas = ENDPOINTS.map(|(path, request, _)| (path, schema(request)));
+        Self { service: Service::new(), schemas, count: 0, differences: BTreeSet::new() }
+    }
+
+    /// Both refuse the request.
+    async fn refused(&mut self, path: &str, request: &Value, what: &str) {
+        let status = self.service.post(path, request).await.status;
+        if status != StatusCode::UNPROCESSABLE_ENTITY {
+            self.differences.insert(format!("the service answers {path} {what} with {status}"));
+        }
+        if self.accepts(path, request) {
+            self.differences.insert(format!("the schema accepts {path} {what}"));
+        }
+        self.count += 1;
+    }
+
+    /// Both refuse the request, or both accept it.
+    async fn agree(&mut self, path: &str, request: &Value, what: &str) {
+        let accepted = self.service.post(path, request).await.status == StatusCode::OK;
+        if accepted != self.accepts(path, request) {
+            self.differences.insert(format!("{path} {what}: accepted by the service: {accepted}"));
+        }
+        self.count += 1;
+    }
+
+    fn accepts(&self, path: &str, request: &Value) -> bool {
+        self.schemas.iter().any(|(of, schema)| *of == path && schema.is_valid(request))
+    }
+
+    /// Fails if they differ, or have seen fewer requests than this.
+    fn holds(self, least: usize) {
+        let differences: Vec<_> = self.differences.into_iter().collect();
+        assert!(differences.is_empty(), "{} differences:\n{}", differences.len(), differences.join("\n"));
+        assert!(self.count >= least, "only {} requests", self.count);
+    }
+}
+
+#[tokio::test]
+async fn schema_and_service_refuse_the_same_fields() {
+    let mut agreement = Agreement::new();
+    for field in fields() {
+        let (path, pointer) = (field.path, field.pointer.as_str());
+        if field.need != Need::Optional {
+            agreement.refused(path, &without(&field.request, pointer), &format!("without {pointer}")).await;
+        }
+        for value in field.kind.mistyped() {
+            let what = format!("with {value} at {pointer}");
+            agreement.refused(path, &with(&field.request, pointer, value), &what).await;
+        }
+        let misspelt = format!("{pointer}s");
+        agreement.refused(path, &with(&field.request, &misspelt, 1), &format!("with {misspelt}")).await;
+    }
+    agreement.holds(900);
+}
+
+#[tokio::test]
+async fn schema_and_service_refuse_the_same_numbers() {
+    let mut agreement = Agreement::new();
+    for mut field in fields() {
+        let range = match field.kind {
+            Kind::Number(range) => range,
+            Kind::Angle(range) => {
+                // A schema has one bound for both units, the wider.
+                field.request = with(&field.request, "/angle_unit", "deg");
+                range.in_degrees()
+            }
+            _ => continue,
+        };
+        for value in range.beyond() {
+            let what = format!("with {value:e} at {}", field.pointer);
+            agreement.refused(field.path, &with(&field.request, &field.pointer, value), &what).await;
+        }
+    }
+    for (output, what) in [
+        (json!({"samples_per_step": 0}), "no sample"),
+        (json!({"samples_per_step": 1.5}), "samples and a half"),
+        (json!({"count": 1}), "one row"),
+        (json!({"count": 2.5}), "rows and a half"),
+        (json!({"times": [-1]}), "a negative time"),
+        (json!({"times": [1, "2"]}), "a time that is no number"),
+        (json!({"trajectory": true}), "a trajectory that is true"),
+        (json!({}), "no way of output"),
+        (json!({"count": 2, "interval": 1}), "two ways of output"),
+    ] {
+        agreement.refused("/simulate", &with(&flight("ecef"), "/output", output), what).await;
+    }
+    for (name, value) in [
+        ("position", json!([1e13, 0, 0])),
+        ("position", json!([7e6, 0])),
+        ("velocity", json!([1, 2, 3, 4])),
+        ("velocity", json!([1, 2, null])),
+    ] {
+        for kind in ["ecef", "eci"] {
+            let request = with(&conversion(kind), &format!("/state/{name}"), value.clone());
+            agreement.refused("/convert", &request, &format!("{kind} with {value} as {name}")).await;
+        }
+    }
+    // The bound on the speed is relative to the planet: a schema sees it of planet-fixed vectors alone.
+    let fast = with(&conversion("ecef"), "/state/velocity", json!([1e6_f64.next_up(), 0, 0]));
+    agreement.refused("/convert", &fast, "a component of the velocity out of its range").await;
+    agreement.holds(100);
+}
+
+#[tokio::test]
+async fn schema_and_service_ask_for_exactly_one_alternative() {
+    let mut agreement = Agreement::new();
+    for (path, request, place) in
+        [("/simulate", flight as fn(&str) -> Value, "/initial_state"), ("/convert", conversion, "/state")]
+    {
+        for (kind, one, other) in
+            [("planet_relative", "altitude", "radius"), ("orbital_elements", "semi_major_axis", "semi_latus_rectum")]
+        {
+            let request = request(kind);
+            let none = without(&request, &format!("{place}/{one}"));
+            agreement.refused(path, &none, &format!("{kind} without {one}")).await;
+            let both = with(&request, &format!("{place}/{other}"), 7e6);
+            agreement.refused(path, &both, &format!("{kind} with {one} and {other}")).await;
+        }
+        let numbers = with_all(&request("ecef"), [("/planet/model", json!("earth_wgs84"))]);
+        agreement.refused(path, &numbers, "a named planet with numbers").await;
+        let unnamed = without(&request("ecef"), "/planet/model");
+        agreement.refused(path, &unnamed, "numbers of a planet without custom").await;
+    }
+    agreement.holds(12);
+}
+
+#[tokio::test]
+async fn schema_and_service_read_the_same_sidereal_times() {
+    let mut agreement = Agreement::new();
+    for value in [
+        json!(0),
+        json!(-1e9),
+        json!("00:03:20.6"),
+        json!("100:59:59"),
+        json!("00:03"),
+        json!("0:03:20"),
+        json!("00:60:00"),
+        json!("00:00:60"),
+        json!("00:03:20."),
+        json!("noon"),
+        json!(""),
+        json!("-00:03:20"),
+    ] {
+        for kind in KINDS {
+            let request = with(&conversion(kind), "/state/sidereal_time", value.clone());
+            agreement.agree("/convert", &request, &format!("a sidereal time of {value}")).await;
+        }
+    }
+    agreement.holds(60);
+}
+
+/// The pointers of every value inside this one.
+fn pointers(value: &Value, place: &str) -> Vec<String> {
+    let at = |name: &str| format!("{place}/{}", name.replace('~', "~0").replace('/', "~1"));
+    let inner: Vec<(String, &Value)> = match value {
+        Value::Object(map) => map.iter().map(|(name, value)| (at(name), value)).collect(),
+        Value::Array(array) => array.iter().enumerate().map(|(i, value)| (format!("{place}/{i}"), value)).collect(),
+        _ => Vec::new(),
+    };
+    inner.into_iter().flat_map(|(place, value)| [vec![place.clone()], pointers(value, &place)].concat()).collect()
+}
+
+#[tokio::test]
+async fn schema_and_service_agree_on_every_mutant_of_what_is_shown() {
+    let mut agreement = Agreement::new();
+    for (path, ..) in ENDPOINTS {
+        for (name, request) in shown(path).into_iter().filter(|(name, _)| !name.ends_with("earth_jameson_text")) {
+            for pointer in pointers(&request, "") {
+                for value in [json!(null), json!([]), json!("13")] {
+                    let what = format!("{name} with {value} at {pointer}");
+                    let request = with(&request, &pointer, value);
+                    // Any text is a name.
+                    match pointer.as_str() {
+                        "/name" => agreement.agree(path, &request, &what).await,
+                        _ => agreement.refused(path, &request, &what).await,
+                    }
+                }
+                // Where all fields have defaults, an empty object is complete.
+                let emptied = with(&request, &pointer, json!({}));
+                agreement.agree(path, &emptied, &format!("{name} with {{}} at {pointer}")).await;
+                let in_an_array = pointer.ends_with(|last: char| last.is_ascii_digit());
+                if !in_an_array {
+                    let value = request.pointer(&pointer).unwrap().clone();
+                    let removed = without(&request, &pointer);
+                    agreement.agree(path, &removed, &format!("{name} without {pointer}")).await;
+                    let renamed = with(&removed, &format!("{pointer}_"), value);
+                    agreement.refused(path, &renamed, &format!("{name} with {pointer}_")).await;
+                }
+            }
+        }
+    }
+    agreement.holds(2000);
+}
+
+#[tokio::test]
+async fn answers_are_valid() {
+    let service = Service::new();
+    for (path, _, response) in ENDPOINTS {
+        let schema = schema(response);
+        for (name, request) in good_requests(path) {
+            for request in [request.clone(), with(&request, "/echo", true)] {
+                let answer = service.post(path, &request).await;
+                assert_eq!(answer.status, StatusCode::OK, "{name}");
+                is_valid(&schema, &answer.json(), &name);
+            }
+        }
+    }
+    for state in [
+        json!({"type": "eci", "position": [7e6, 0, 0], "velocity": [1, 0, 0]}),
+        json!({"type": "orbital_elements", "semi_latus_rectum": 7e6, "eccentricity": 1, "inclination": 0, "raan": 0,
+            "argument_of_periapsis": 0, "true_anomaly": 0}),
+    ] {
+        let answer = service.post("/convert", &json!({"state": state})).await;
+        is_valid(&schema("ConvertResponse"), &answer.json(), "an answer with nulls");
+    }
+    let request = with(&flight("geodetic"), "/output", json!({"trajectory": false}));
+    let answer = service.post("/simulate", &request).await;
+    is_valid(&schema("SimulateResponse"), &answer.json(), "an answer without trajectory");
+}
+
+#[tokio::test]
+async fn problem_documents_are_valid() {
+    let service = Service::new();
+    let schema = schema("Problem");
+    let spherical = json!({"formulation": "spherical"});
+    let at_rest = with_all(&flight("geodetic"), [("/initial_state/speed", json!(0)), ("/solver", spherical)]);
+    let rows = with(&flight("geodetic"), "/output", json!({"count": 1_000_000_000}));
+    for answer in [
+        service.get("/nothing").await,
+        service.get("/simulate").await,
+        service.post_text("/simulate", "{").await,
+        service.post("/simulate?format=xml", &flight("ecef")).await,
+        service.post("/simulate?x=1", &flight("ecef")).await,
+        service.post("/simulate", &json!({})).await,
+        service.post("/simulate", &at_rest).await,
+        service.post("/simulate", &rows).await,
+        service.post_text("/convert", " ".repeat(2 << 20)).await,
+    ] {
+        assert!(answer.status.is_client_error());
+        is_valid(&schema, &answer.json(), "a problem");
+    }
+}
+
+#[test]
+fn every_operation_and_response_has_a_description() {
+    let document = document();
+    let operations = document["paths"].as_object().unwrap().iter();
+    for (path, operation) in
+        operations.flat_map(|(path, item)| item.as_object().unwrap().values().map(move |o| (path, o)))
+    {
+        assert!(operation["summary"].as_str().is_some_and(|text| !text.is_empty()), "{path}");
+        let responses = operation["responses"].as_object().unwrap();
+        assert!(!responses.is_empty(), "{path}");
+        for (status, response) in responses {
+            assert!(response["description"].as_str().is_some_and(|text| !text.is_empty()), "{path} {status}");
+        }
+    }
+    let given: Vec<_> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
+    for path in ["/simulate", "/convert", "/health/live", "/health/ready"] {
+        assert!(given.contains(&path), "{path}");
+    }
+}
+
+/// The names of the schemas that this value refers to, directly or through others.
+fn reached(document: &Value, value: &Value, names: &mut BTreeSet<String>) {
+    for pointer in pointers(value, "").iter().filter(|pointer| pointer.ends_with("/$ref")) {
+        let target = value.pointer(pointer).and_then(Value::as_str).unwrap();
+        let name = target.strip_prefix("#/components/schemas/").unwrap();
+        let schema = &document["components"]["schemas"][name];
+        assert!(schema.is_object(), "{target} leads nowhere");
+        if names.insert(name.to_owned()) {
+            reached(document, schema, names);
+        }
+    }
+}
+
+#[test]
+fn every_object_of_a_request_is_closed_and_every_field_described() {
+    let document = document();
+    let mut names = BTreeSet::new();
+    for (path, ..) in ENDPOINTS {
+        reached(&document, &document["paths"][path]["post"]["requestBody"], &mut names);
+    }
+    assert!(names.len() > 15, "{names:?}");
+    for name in names {
+        let schema = &document["components"]["schemas"][&name];
+        if schema["type"] == "object" || schema.get("properties").is_some() {
+            assert_eq!(schema["additionalProperties"], json!(false), "{name}");
+            for (field, property) in schema["properties"].as_object().unwrap() {
+                let described = property["description"].is_string() || property["oneOf"][0]["description"].is_string();
+                assert!(described, "{name}.{field}");
+            }
+        }
+    }
+}
