@@ -79,7 +79,7 @@ fn elements_agree_with_hapsira() {
         angle(&what, back.argument_of_periapsis, row[4].to_radians(), periapsis.min(TAU));
         angle(&what, back.true_anomaly, row[5].to_radians(), periapsis.min(TAU));
         assert_eq!(undefined.circular, row[1] == 0.0, "{what}");
-        assert_eq!(undefined.equatorial, row[2] == 0.0 || row[2] == 180.0, "{what}");
+        assert_eq!(undefined.equatorial, row[2] % 180.0 == 0.0, "{what}");
     }
 }
 
@@ -186,7 +186,7 @@ fn the_earth_rotation_angle_is_that_of_the_iers_conventions() {
     // IERS Conventions 2010, equation 5.15, at the epoch: 2π 0.7790572732640 = 280.46061837504 degrees.
     near("at J2000", earth_rotation_angle(0.0).to_degrees(), 280.460_618_375_04, 1e-11);
     // A sidereal day later it is the same, and a solar day later 360.98561228... degrees on.
-    let sidereal_day = 1.0 / 1.002_737_811_911_354_48;
+    let sidereal_day = 1.0 / (1.0 + 0.002_737_811_911_354_48);
     angle("a sidereal day later", earth_rotation_angle(sidereal_day), earth_rotation_angle(0.0), 1e-12);
     let day = earth_rotation_angle(1.0) - earth_rotation_angle(0.0);
     near("a day later", day.to_degrees(), 0.985_612_288_087_612_8, 1e-11);

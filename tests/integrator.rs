@@ -275,7 +275,11 @@ fn falls_are_found_where_they_first_happen() {
     check("a short dip in a quarter of the step", first_fall(|t| (t - 0.62) * (t - 0.62) * 100.0 - 0.01), Some(0.61));
     check("a dip that stays above", first_fall(|t| (t - 0.6) * (t - 0.6) + 0.01), None);
     check("up, then down through zero", first_fall(|t| t * (-t + 0.7)), Some(0.7));
-    check("from just below, up and down", first_fall(|t| t * (-t + 0.7) - 1e-3), Some((0.7 + 0.486_f64.sqrt()) / 2.0));
+    check(
+        "from just below, up and down",
+        first_fall(|t| t * (-t + 0.7) - 1e-3),
+        Some(f64::midpoint(0.7, 0.486_f64.sqrt())),
+    );
     check("from below, never above", first_fall(|t| t * (-t + 0.7) - 1.0), Some(0.35));
     check("far from zero", first_fall(|t| t + 7.0), None);
 }

@@ -90,7 +90,7 @@ impl fmt::Display for Bound {
 }
 
 /// A number as people write it: with an exponent where the digits would not fit.
-struct Plain(f64);
+pub(crate) struct Plain(pub(crate) f64);
 
 impl fmt::Display for Plain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

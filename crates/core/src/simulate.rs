@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical};
-use crate::scenario::{Equations, Scenario};
+use crate::scenario::{Equations, Plain, Scenario};
 use crate::trajectory::{Termination, Trajectory};
 use watch::Watch;
 
@@ -14,7 +14,7 @@ use watch::Watch;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The limit on the number of steps was reached.
-    #[error("the flight took more than {limit} integration steps; it got to t = {time} s")]
+    #[error("the flight took more than {limit} integration steps; it got to t = {} s", Plain(*.time))]
     StepLimit {
         /// The instant reached, s.
         time: f64,
@@ -22,7 +22,7 @@ pub enum SimulationError {
         limit: usize,
     },
     /// The spherical equations of motion break down.
-    #[error("the spherical equations of motion are singular {}, reached at t = {time} s", place(*.at))]
+    #[error("the spherical equations of motion are singular {}, reached at t = {} s", place(*.at), Plain(*.time))]
     Singularity {
         /// The instant reached, s.
         time: f64,
@@ -30,19 +30,19 @@ pub enum SimulationError {
         at: Singularity,
     },
     /// No step that advances the time meets the tolerance.
-    #[error("the motion changes too fast to be followed at t = {time} s")]
+    #[error("the motion changes too fast to be followed at t = {} s", Plain(*.time))]
     TooStiff {
         /// The instant reached, s.
         time: f64,
     },
     /// A quantity of the flight is too large for a floating-point number.
-    #[error("the loads at t = {time} s are too large for a floating-point number")]
+    #[error("the loads at t = {} s are too large for a floating-point number", Plain(*.time))]
     Overflow {
         /// The instant reached, s.
         time: f64,
     },
     /// The flag was raised.
-    #[error("interrupted at t = {time} s")]
+    #[error("interrupted at t = {} s", Plain(*.time))]
     Interrupted {
         /// The instant reached, s.
         time: f64,

@@ -21,7 +21,7 @@ pub async fn redirect() -> Redirect {
 /// The page.
 ///
 /// # Errors
-/// As [`file`].
+/// [`ApiError::NotFound`] where there is none.
 pub async fn page(uri: OriginalUri) -> Result<Response, ApiError> {
     file(uri, Path("index.html".to_owned())).await
 }

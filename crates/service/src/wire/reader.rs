@@ -134,10 +134,12 @@ impl Object<'_> {
 
     /// A vector of three numbers.
     pub fn vector(&mut self, name: &'static str, bound: Bound) -> Option<[f64; 3]> {
-        let numbers = self.numbers(name, bound)?;
-        let count = numbers.len();
-        let vector = numbers.try_into().map_err(|_| format!("must have 3 numbers, got {count}"));
-        self.check(name, vector, Ok)
+        if let Some(count) = self.map.get(name).and_then(Value::as_array).map(Vec::len)
+            && count != 3
+        {
+            self.fault_of(name, format!("must have 3 numbers, got {count}"));
+        }
+        self.numbers(name, bound)?.try_into().ok()
     }
 
     /// A list of numbers.
@@ -164,7 +166,7 @@ impl Object<'_> {
         let mut sound = true;
         for (index, pair) in numbers.windows(2).enumerate() {
             if pair[1] <= pair[0] {
-                let detail = format!("must be greater than the {:?} before it, got {:?}", pair[0], pair[1]);
+                let detail = format!("must be greater than the {} before it, got {}", pair[0], pair[1]);
                 self.fault_of(&format!("{name}/{}", index + 1), detail);
                 sound = false;
             }
@@ -306,8 +308,8 @@ fn number(value: &Value) -> Result<f64, String> {
 }
 
 fn whole(number: &Number) -> Option<usize> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be whole and in range")]
-    let from_float = |float: f64| (float.fract() == 0.0 && (0.0..1e15).contains(&float)).then_some(float as usize);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and saturating above")]
+    let from_float = |float: f64| (float.fract() == 0.0 && float >= 0.0).then_some(float as usize);
     number.as_u64().and_then(|whole| usize::try_from(whole).ok()).or_else(|| number.as_f64().and_then(from_float))
 }
 
