@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use reentry::Planet;
 use reentry::coordinates::{
     FlightPath, Geodetic, Inertial, NoElements, OrbitShape, OrbitalElements, PlanetFixed, earth_rotation_angle,
@@ -226,7 +227,9 @@ fn shapes() -> impl Strategy<Value = Shape> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 2000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default()
+    })]
 
     #[test]
     fn flight_path_there_and_back(state in flight_path()) {
@@ -303,5 +306,26 @@ proptest! {
         for wrapped in [back.raan, back.argument_of_periapsis, back.true_anomaly] {
             prop_assert!((0.0..TAU).contains(&wrapped));
         }
+    }
+}
+
+#[test]
+fn the_angles_of_a_zero_velocity_are_zero_whatever_the_signs_of_its_zeros() {
+    for zero in [0.0, -0.0] {
+        let position = Vector3::new(4e6, -3e6, 3e6);
+        let state = PlanetFixed { position, velocity: Vector3::new(zero, -zero, zero) };
+        let state = FlightPath::from_planet_fixed(&state);
+        assert_eq!([state.speed, state.flight_path_angle, state.heading].map(f64::abs).map(f64::to_bits), [0; 3]);
+    }
+}
+
+#[test]
+fn the_nearest_point_is_found_however_near_the_equatorial_plane() {
+    let deep = |z: f64| latitude_and_altitude(&Vector3::new(20_000.0, 0.0, z), &WGS84.shape);
+    let (latitude, altitude) = deep(0.0);
+    for exponent in [-300, -200, -100, -20, -10] {
+        let (near_latitude, near_altitude) = deep(10_f64.powi(exponent));
+        near("latitude", near_latitude, latitude, 1e-9);
+        near("altitude", near_altitude, altitude, 1e-3);
     }
 }

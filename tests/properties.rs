@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use reentry::coordinates::{FlightPath, PlanetFixed};
 use reentry::motion::STANDARD_GRAVITY;
 use reentry::planet::Shape;
@@ -25,7 +26,8 @@ fn evenly(flight: &Trajectory, count: usize) -> Vec<FlightPath<f64>> {
 }
 
 fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
+    // The same flights in every run: the gate must not depend on chance.
+    ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() }
 }
 
 proptest! {
@@ -102,13 +104,15 @@ proptest! {
             let point = flight.at(time);
             let loads = point.loads;
             let expected_density = 1.547_93 * (-loads.altitude / 6935.0).exp();
-            relative("ρ₀ e^(-h/H)", loads.density, expected_density, 1e-12);
+            near("ρ₀ e^(-h/H)", loads.density, expected_density, 1e-12 * expected_density + 1e-300);
             let pressure = loads.density * point.flight_path.speed.powi(2) / 2.0;
-            relative("½ρV²", loads.dynamic_pressure, pressure, 1e-12);
+            // Subnormal numbers have fewer digits.
+            near("½ρV²", loads.dynamic_pressure, pressure, 1e-12 * pressure + 1e-300);
             let fade = (point.flight_path.flight_path_angle.cos() / 1e-3).min(1.0);
             if fade >= 1.0 {
                 let force = pressure * reference_area * lift_coefficient.hypot(drag_coefficient);
-                relative("F/(m g)", loads.load_factor, force / (mass * STANDARD_GRAVITY), 1e-12);
+                let expected = force / (mass * STANDARD_GRAVITY);
+                near("F/(m g)", loads.load_factor, expected, 1e-12 * expected + 1e-300);
             }
             // The rate of the speed along the flight, by a central difference.
             let step = 1e-3 * end.min(1.0);

@@ -96,7 +96,8 @@ fn the_core_knows_no_json_clock_thread_file_or_chance() {
 
 #[test]
 fn integration_has_not_heard_of_flight() {
-    for (file, text) in sources("crates/core/src/integrate", "rs") {
+    let own = sources("crates/core/src", "rs").into_iter().filter(|(file, _)| file.ends_with("integrate.rs"));
+    for (file, text) in own.chain(sources("crates/core/src/integrate", "rs")) {
         for word in ["altitude", "planet", "vehicle", "velocity", "atmosphere"] {
             assert!(!text.contains(word), "{} names {word}", file.display());
         }

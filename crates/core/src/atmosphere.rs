@@ -23,8 +23,8 @@ impl Atmosphere {
 
     /// Density, kg/m³, at an altitude above the surface along the radius vector, m.
     ///
-    /// Far below the surface, where only trial stages of the integrator come, the density stays at e⁷⁰⁰ times its surface value,
-    /// the last that is finite.
+    /// From 700 scale heights below the surface on, where hardly more than trial stages of the integrator come,
+    /// the density grows no more: there it is e⁷⁰⁰ times its surface value, and further down no number would hold it.
     #[inline(always)]
     pub fn density<S: Scalar>(&self, altitude: S) -> S {
         let Self::Exponential { surface_density, scale_height } = *self;

@@ -10,7 +10,7 @@
 //! on the equator, z along the pole. The [`Inertial`] frame shares its z axis; at `sidereal_time` Δt after the two were aligned
 //! the planet-fixed frame is turned by ωΔt to the east (Jameson 2006, equation 1).
 //!
-//! Angles are in radians. Where an angle has no meaning (the heading of vertical flight, the longitude of a pole), it is 0.
+//! Angles are in radians. The angles of a zero velocity are 0, as is the heading of one that has no horizontal part.
 
 mod flight_path;
 mod geodetic;
@@ -22,7 +22,7 @@ pub use geodetic::{Geodetic, latitude_and_altitude};
 pub use inertial::{Inertial, earth_rotation_angle};
 pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements};
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
@@ -74,7 +74,10 @@ impl<S: Scalar> LocalHorizon<S> {
     fn speed_and_angles(&self, velocity: &Vector3<S>) -> (S, S, S) {
         let [east, north, up] = [&self.east, &self.north, &self.up].map(|axis| axis.dot(velocity));
         let level = (east * east + north * north).sqrt();
-        (length(velocity), up.atan2(level), north.atan2(east))
+        let speed = length(velocity);
+        // The arc tangent of signed zeros may be π.
+        let or_zero = |angle: S, of: S| S::select(of.less_than(f64::MIN_POSITIVE), S::zero(), angle);
+        (speed, or_zero(up.atan2(level), speed), or_zero(north.atan2(east), level))
     }
 }
 
@@ -93,6 +96,9 @@ pub fn wrap_to_turn(angle: f64) -> f64 {
 
 /// The same angle in (-π, π].
 pub fn wrap_to_half_turns(angle: f64) -> f64 {
+    if -PI < angle && angle <= PI {
+        return angle;
+    }
     let wrapped = wrap_to_turn(angle);
-    if wrapped > std::f64::consts::PI { wrapped - TAU } else { wrapped }
+    if wrapped > PI { wrapped - TAU } else { wrapped }
 }

@@ -120,7 +120,7 @@ impl<'a, F: System<N>, S: Scalar, const N: usize> Integrator<'a, F, S, N> {
             // A remainder below one per cent of a step is taken along.
             let step_end = if self.time + length * 1.01 >= end { end } else { self.time + length };
             length = step_end - self.time;
-            if length.is_nan() || length <= 0.0 {
+            if length.is_nan() || length <= LEAST_LENGTH * end {
                 return Err(IntegrationError::StepTooSmall { time: self.time });
             }
 
@@ -214,6 +214,8 @@ const SAFETY: f64 = 0.9;
 const LEAST_GROWTH: f64 = 1.0 / 3.0;
 const GREATEST_GROWTH: f64 = 6.0;
 const NOT_FINITE_SHRINK: f64 = 0.1;
+/// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.
+const LEAST_LENGTH: f64 = 1e-18;
 
 fn values<S: Scalar, const N: usize>(state: &[S; N]) -> [f64; N] {
     state.map(Scalar::value)

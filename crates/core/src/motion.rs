@@ -22,6 +22,11 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 /// Within this angle of the vertical the lift fades out, rad: in vertical flight the bank angle has no meaning.
 pub const LIFT_FADE_ANGLE: f64 = 1e-3;
 
+/// Scale heights that a step may fall; see [`Forces::longest_step`].
+const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
+/// Times of drag that a step may last; see [`Forces::longest_step`].
+const DRAG_TIMES_A_STEP: f64 = 1.5;
+
 /// What acts on the vehicle.
 #[derive(Clone, Copy, Debug)]
 pub struct Forces {
@@ -126,20 +131,28 @@ impl Forces {
     ///
     /// From space an integrator sees no air, and a long step would jump over the whole atmosphere.
     /// A step ends at the latest when the vehicle, at its present vertical speed and acceleration, has fallen half the way
-    /// to the sensible atmosphere and ten scale heights more.
+    /// to the sensible atmosphere and some scale heights more.
+    /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
+    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
     fn longest_step(&self, state: &PlanetFixed<f64>) -> f64 {
         let PlanetFixed { position, velocity } = state;
         let radius = length(position);
         let altitude = self.planet.shape.altitude(position);
         let to_air = (altitude - self.atmosphere.sensible_altitude()).max(0.0);
-        let depth = 0.5 * to_air + 10.0 * self.atmosphere.scale_height();
+        let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.atmosphere.scale_height();
         let rise = position.dot(velocity) / radius;
         let inertial = velocity + Vector3::z().cross(position) * self.planet.rotation_rate;
         let level_squared = inertial.norm_squared() - rise * rise;
         let fall = (self.planet.gravity(radius) - level_squared / radius).max(0.0);
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
-        if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) }
+        let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
+
+        let speed = length(velocity);
+        let pressure = dynamic_pressure(self.atmosphere.density(altitude), speed);
+        let air = self.vehicle.aerodynamic_acceleration(pressure);
+        let drag_time = speed / air.drag.hypot(air.lift);
+        if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
     /// The loads in a state.

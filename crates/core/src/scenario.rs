@@ -170,14 +170,14 @@ pub struct Case {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scenario {
     case: Case,
-    on_stop_altitude: Option<Heading>,
+    on_stop_altitude: Option<Departure>,
 }
 
 /// Where a state on the stop altitude goes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Heading {
-    Up,
-    Down,
+enum Departure {
+    Rising,
+    Sinking,
 }
 
 /// Something in a case that cannot be flown.
@@ -271,7 +271,7 @@ impl Scenario {
         if !faults.is_empty() {
             return Err(ScenarioError(faults));
         }
-        let on_stop_altitude = (altitude <= case.stop.altitude + ON_STOP_ALTITUDE).then(|| case.heading());
+        let on_stop_altitude = (altitude <= case.stop.altitude + ON_STOP_ALTITUDE).then(|| case.departure());
         Ok(Self { case, on_stop_altitude })
     }
 
@@ -280,9 +280,14 @@ impl Scenario {
         &self.case
     }
 
+    /// Whether the flight starts on the stop altitude and leaves it upward.
+    pub fn rises_from_stop_altitude(&self) -> bool {
+        self.on_stop_altitude == Some(Departure::Rising)
+    }
+
     /// Whether the flight ends where it starts: on the stop altitude, and not rising.
     pub fn ends_at_start(&self) -> bool {
-        self.on_stop_altitude == Some(Heading::Down)
+        self.on_stop_altitude == Some(Departure::Sinking)
     }
 }
 
@@ -294,14 +299,14 @@ impl Case {
     }
 
     /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
-    fn heading(&self) -> Heading {
+    fn departure(&self) -> Departure {
         let PlanetFixed { position, velocity } = &self.initial_state;
         let acceleration = self.forces().acceleration(&self.initial_state);
         let moving = nalgebra::Vector3::from_fn(|i, _| Dual2_64::new(position[i], velocity[i], acceleration[i]));
         let altitude = self.planet.shape.altitude(&moving);
         let level = 16.0 * f64::EPSILON * velocity.norm();
         let rate = if altitude.v1.abs() > level { altitude.v1 } else { altitude.v2 };
-        if velocity.norm() > 0.0 && rate > 0.0 { Heading::Up } else { Heading::Down }
+        if velocity.norm() > 0.0 && rate > 0.0 { Departure::Rising } else { Departure::Sinking }
     }
 }
 

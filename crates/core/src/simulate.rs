@@ -79,6 +79,9 @@ fn fly<F: Formulation>(scenario: &Scenario, motion: &F, interrupt: &AtomicBool) 
     regular(motion, 0.0, &start)?;
     let mut integrator = Integrator::new(motion, start, limits);
     let mut watch = Watch::new(motion, case.stop.altitude, &start, integrator.derivative())?;
+    if scenario.rises_from_stop_altitude() {
+        watch.start_upward();
+    }
 
     let mut steps: Vec<Step<f64, 6>> = Vec::new();
     let mut termination = scenario.ends_at_start().then_some(Termination::SurfaceImpact);

@@ -84,6 +84,16 @@ pub struct FlightPoint {
     pub loads: Loads<f64>,
 }
 
+impl FlightPoint {
+    /// Whether every quantity is a finite number.
+    pub fn is_finite(&self) -> bool {
+        let Loads { altitude, density, dynamic_pressure, deceleration, load_factor } = self.loads;
+        let path: [f64; 6] = self.flight_path.into();
+        let rest = [altitude, density, dynamic_pressure, deceleration, load_factor, self.geodetic_altitude];
+        path.iter().chain(&rest).all(|quantity| quantity.is_finite())
+    }
+}
+
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
@@ -182,6 +192,8 @@ impl Trajectory {
     }
 
     /// The states at ascending times, s.
+    ///
+    /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
         let mut following = 0;
         let mut point = |time: f64| {

@@ -21,7 +21,7 @@ pub struct Config {
     #[arg(long, env = "REENTRY_QUEUE", default_value_t = 64)]
     pub queue: usize,
 
-    /// Seconds that a request may take, waiting included; then it is answered with 504
+    /// Seconds that a job may take, waiting included, before 504 is answered, and that its body may take before 408
     #[arg(long, env = "REENTRY_DEADLINE", default_value = "10", value_parser = seconds)]
     pub deadline: Duration,
 

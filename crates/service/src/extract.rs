@@ -23,8 +23,9 @@ impl FromRequest<AppState> for Payload {
         }
         let limit = state.config.body_limit;
         let declared = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok());
-        if declared.and_then(|length| length.parse().ok()).is_some_and(|length: u64| length > limit as u64) {
-            // Refused before it is sent, for clients that wait for the word to go on.
+        let too_long = declared.and_then(|length| length.parse().ok()).is_some_and(|length: u64| length > limit as u64);
+        if too_long && request.headers().contains_key(header::EXPECT) {
+            // The client waits for the word to go on; any other would send all the same, and miss the answer.
             return Err(ApiError::PayloadTooLarge { limit });
         }
         let deadline = state.config.deadline;

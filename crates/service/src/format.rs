@@ -86,7 +86,7 @@ fn quality(accept: &str, media_type: &str) -> f64 {
             range if range == "*/*" => 1,
             _ => continue,
         };
-        let weight = parameters.find_map(|parameter| parameter.strip_prefix("q="));
+        let weight = parameters.find_map(|parameter| parameter.strip_prefix("q=").or(parameter.strip_prefix("Q=")));
         let quality = weight.map_or(1.0, |weight| weight.parse().unwrap_or(0.0));
         if specificity > found.0 {
             found = (specificity, quality);

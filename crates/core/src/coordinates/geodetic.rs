@@ -85,8 +85,9 @@ pub fn latitude_and_altitude(position: &Vector3<f64>, shape: &Shape) -> (f64, f6
 fn nearest_point((a, b): (f64, f64), (x, y): (f64, f64)) -> (f64, f64, f64) {
     let ratio = (a / b) * (a / b);
     let [u, v] = [x / a, y / b];
-    if v == 0.0 && u * ratio <= ratio - 1.0 {
-        // Inside the evolute on the long axis: the two nearest points lie off the axis; take the one of positive latitude.
+    if v < 1e-20 && u * ratio <= ratio - 1.0 {
+        // On the long axis to rounding, inside the evolute: the two nearest points lie off the axis; take the one on the
+        // side of y ≥ 0.
         let foot_u = u * ratio / (ratio - 1.0);
         let foot_v = (1.0 - foot_u * foot_u).sqrt();
         return (foot_u / a, foot_v / b, -(foot_u * a - x).hypot(foot_v * b));
@@ -106,7 +107,9 @@ fn nearest_point((a, b): (f64, f64), (x, y): (f64, f64)) -> (f64, f64, f64) {
             least = least.max(t);
         }
         let newton = t - value / slope;
-        let next = if newton > least { newton.min(greatest) } else { 0.5 * (least + t) };
+        // The root may lie many powers of ten below.
+        let between = if least > 0.0 { (least * t).sqrt() } else { 0.5 * t };
+        let next = if newton > least { newton.min(greatest) } else { between };
         let change = (next - t).abs();
         t = next;
         if change <= f64::EPSILON * t {

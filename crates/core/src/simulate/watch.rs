@@ -13,6 +13,7 @@ pub(super) struct Watch<'a, F> {
     motion: &'a F,
     stop_altitude: f64,
     loads: Loads<Dual64>,
+    above_stop: Dual64,
     cone: Dual64,
     pub(super) peaks: Peaks,
     pub(super) warnings: Vec<Warning>,
@@ -39,16 +40,20 @@ impl<'a, F: Formulation> Watch<'a, F> {
         if motion.forces().vehicle.has_lift() && cone.re < 0.0 {
             warnings.push(Warning::LiftFadedNearVertical { time: 0.0 });
         }
-        Ok(Self { motion, stop_altitude, loads, cone, peaks, warnings })
+        let above_stop = loads.altitude - stop_altitude;
+        Ok(Self { motion, stop_altitude, loads, above_stop, cone, peaks, warnings })
+    }
+
+    /// The flight leaves the stop altitude upward, even where rounding gives it no rate, or a falling one.
+    pub(super) fn start_upward(&mut self) {
+        self.above_stop.eps = self.above_stop.eps.max(f64::MIN_POSITIVE);
     }
 
     /// The part of the step at which the stop altitude is first crossed downwards, a dip inside the step included.
     pub(super) fn impact(&self, step: &Step<f64, 6>) -> Option<f64> {
         let above = |state: &PlanetFixed<Dual64>| self.above_stop(state);
         let end = above(&end::<F>(step));
-        event::first_fall(self.loads.altitude - self.stop_altitude, end, step.length(), |part| {
-            above(&self.inside(step, part))
-        })
+        event::first_fall(self.above_stop, end, step.length(), |part| above(&self.inside(step, part)))
     }
 
     /// How long before the end of the step, s, its tangent there passes the stop altitude.
@@ -62,6 +67,7 @@ impl<'a, F: Formulation> Watch<'a, F> {
         let end = end::<F>(step);
         let start = self.loads;
         self.loads = finite_loads(self.motion, step.end_time, &end)?;
+        self.above_stop = self.loads.altitude - self.stop_altitude;
         self.find_peak(step, &start, |peaks| &mut peaks.deceleration, |loads| loads.deceleration);
         self.find_peak(step, &start, |peaks| &mut peaks.load_factor, |loads| loads.load_factor);
         self.find_peak(step, &start, |peaks| &mut peaks.dynamic_pressure, |loads| loads.dynamic_pressure);

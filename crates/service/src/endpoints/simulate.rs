@@ -6,6 +6,7 @@ use axum::extract::State;
 use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
+use reentry::simulate::SimulationError;
 
 use crate::error::ApiError;
 use crate::extract::Payload;
@@ -48,7 +49,11 @@ pub async fn simulate(State(app): State<AppState>, parts: Parts, Payload(body): 
                 Some((sampling, pointer)) => {
                     let too_many = |_| ApiError::TooManyRows { limit: row_limit, pointer };
                     let instants = flight.instants(sampling, row_limit).map_err(too_many)?;
-                    Some(flight.points(&instants))
+                    let points = flight.points(&instants);
+                    if let Some(point) = points.iter().find(|point| !point.is_finite()) {
+                        return Err(SimulationError::Overflow { time: point.time }.into());
+                    }
+                    Some(points)
                 }
                 None => None,
             };

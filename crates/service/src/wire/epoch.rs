@@ -9,6 +9,8 @@ use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, Type};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
+use super::json::shown;
+
 /// The seconds since the inertial and the planet-fixed frame were aligned; requests may write them as `"HH:MM:SS.s"`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SiderealTime(pub f64);
@@ -42,7 +44,7 @@ impl SiderealTime {
     /// # Errors
     /// With what is wrong.
     pub fn read(value: &Value) -> Result<Self, String> {
-        let fault = || format!("must be a number of seconds or \"HH:MM:SS.s\", got {value}");
+        let fault = || format!("must be a number of seconds or \"HH:MM:SS.s\", got {}", shown(value));
         match value {
             Value::Number(number) => number.as_f64().map(Self).ok_or_else(fault),
             Value::String(clock) => clock_seconds(clock).map(Self).ok_or_else(fault),
@@ -58,8 +60,9 @@ fn clock_seconds(clock: &str) -> Option<f64> {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let two_digits = |text: &str| text.len() == 2 && digits(text) && text < "60";
     let sound = hours.len() >= 2 && digits(hours) && two_digits(minutes) && two_digits(whole) && digits(fraction);
-    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
-    sound.then_some(number(hours)? * 3600.0 + number(minutes)? * 60.0 + number(seconds)?)
+    let number = |text: &str| text.parse::<f64>().ok();
+    let sum = number(hours)? * 3600.0 + number(minutes)? * 60.0 + number(seconds)?;
+    (sound && sum.is_finite()).then_some(sum)
 }
 
 /// The instant t = 0.
@@ -75,7 +78,7 @@ impl Instant {
     /// # Errors
     /// With what is wrong.
     pub fn read(value: &Value) -> Result<Self, String> {
-        let fault = || format!("must be an RFC 3339 time such as \"2026-11-22T12:00:00Z\", got {value}");
+        let fault = || format!("must be an RFC 3339 time such as \"2026-11-22T12:00:00Z\", got {}", shown(value));
         let text = value.as_str().and_then(plain_rfc3339).ok_or_else(fault)?;
         let epoch = Epoch::from_gregorian_str(&text).map_err(|_| fault())?;
         let noon_2000 = Epoch::from_gregorian_utc(2000, 1, 1, 12, 0, 0, 0);

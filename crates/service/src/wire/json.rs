@@ -16,6 +16,16 @@ pub fn parse(text: &[u8]) -> Result<Value, serde_json::Error> {
     Ok(value)
 }
 
+/// The beginning of a value, for a message.
+pub(super) fn shown(value: &Value) -> String {
+    match value {
+        Value::String(string) => format!("{:?}", shortened(string)),
+        Value::Array(_) => "an array".to_owned(),
+        Value::Object(_) => "an object".to_owned(),
+        Value::Null | Value::Bool(_) | Value::Number(_) => value.to_string(),
+    }
+}
+
 /// The beginning of a string, for a message.
 pub(super) fn shortened(string: &str) -> String {
     let mut start: String = string.chars().take(40).collect();

@@ -4,7 +4,7 @@ use reentry::scenario::Bound;
 use serde_json::{Map, Number, Value, json};
 
 use super::AngleUnit;
-use super::json::shortened;
+use super::json::{shortened, shown};
 
 /// Something wrong with one field.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,6 +35,9 @@ pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut Object) -> Option<T>) ->
     }
 }
 
+/// Faults that are reported one by one; a list of numbers can have half a million of them.
+const MOST_FAULTS: usize = 1000;
+
 /// What all objects of a request share.
 struct Context {
     faults: Vec<Fault>,
@@ -59,7 +62,7 @@ fn object<T>(
 ) -> Option<T> {
     let kind = kind_of(value);
     let Value::Object(map) = value else {
-        context.faults.push(Fault::new(pointer, format!("must be an object, got {kind}")));
+        context.note(pointer, format!("must be an object, got {kind}"));
         return None;
     };
     let mut object = Object { map, pointer, known: Vec::new(), kind_unknown: false, context };
@@ -68,10 +71,20 @@ fn object<T>(
     result
 }
 
+impl Context {
+    fn note(&mut self, pointer: String, detail: String) {
+        if self.faults.len() < MOST_FAULTS {
+            self.faults.push(Fault::new(pointer, detail));
+        } else if self.faults.len() == MOST_FAULTS {
+            self.faults.push(Fault::new("", format!("there are more faults than these {MOST_FAULTS}")));
+        }
+    }
+}
+
 impl Object<'_> {
     /// Notes a fault of this object as a whole.
     pub fn fault<T>(&mut self, detail: impl Into<String>) -> Option<T> {
-        self.context.faults.push(Fault::new(self.pointer.clone(), detail));
+        self.context.note(self.pointer.clone(), detail.into());
         None
     }
 
@@ -125,7 +138,7 @@ impl Object<'_> {
     pub fn whole_number(&mut self, name: &'static str, least: usize) -> Option<usize> {
         let value = self.required(name)?;
         let kind = kind_of(value);
-        let shown = value.to_string();
+        let shown = shown(value);
         let whole = value.as_number().map(|number| whole(number).filter(|whole| *whole >= least));
         self.check(name, whole.ok_or(format!("must be a whole number, got {kind}")), |whole| {
             whole.ok_or(format!("must be a whole number of at least {least}, got {shown}"))
@@ -280,7 +293,7 @@ impl Object<'_> {
 
     /// Notes a fault of the field, or the element of a field, of the given relative pointer.
     fn fault_of(&mut self, name: &str, detail: String) {
-        self.context.faults.push(Fault::new(format!("{}/{name}", self.pointer), detail));
+        self.context.note(format!("{}/{name}", self.pointer), detail);
     }
 
     fn refuse_unknown_fields(&mut self) {
@@ -297,8 +310,8 @@ impl Object<'_> {
         let known = known.join(", ");
         for name in unknown {
             let escaped = name.replace('~', "~0").replace('/', "~1");
-            let pointer = format!("{}/{escaped}", self.pointer);
-            self.context.faults.push(Fault::new(pointer, format!("is not a field here; the fields are {known}")));
+            self.context
+                .note(format!("{}/{escaped}", self.pointer), format!("is not a field here; the fields are {known}"));
         }
     }
 }
@@ -315,7 +328,7 @@ fn whole(number: &Number) -> Option<usize> {
 
 fn bounded(value: &Value, bound: Bound) -> Result<f64, String> {
     let number = number(value)?;
-    if bound.admits(number) { Ok(number) } else { Err(format!("must be {bound}, got {value}")) }
+    if bound.admits(number) { Ok(number) } else { Err(format!("must be {bound}, got {}", shown(value))) }
 }
 
 fn bounded_angle(value: &Value, bound: Bound, unit: Option<AngleUnit>) -> Result<f64, String> {

@@ -9,6 +9,7 @@ use utoipa::ToSchema;
 use super::AngleUnit;
 use super::atmosphere::Atmosphere;
 use super::epoch::Instant;
+use super::json::shown;
 use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::state::State;
@@ -252,7 +253,7 @@ impl Output {
         let trajectory = object.has("trajectory").then(|| {
             object.value("trajectory", |value| match value {
                 Value::Bool(false) => Ok(false),
-                other => Err(format!("must be false, or be left out for one of the other ways, got {other}")),
+                other => Err(format!("must be false, or be left out for one of the other ways, got {}", shown(other))),
             })
         });
         let times = times.map(|times| times.filter(|times| object.ascending("times", times)));

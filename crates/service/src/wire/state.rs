@@ -12,7 +12,7 @@ pub use vectors::{Ecef, Eci};
 
 use reentry::coordinates::{Inertial, PlanetFixed};
 use reentry::planet::Planet;
-use reentry::scenario::state_faults;
+use reentry::scenario::{Bound, state_faults};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -90,7 +90,8 @@ impl State {
         let mut faults = match self {
             Self::PlanetRelative(state) => state.faults(pointer, unit, planet),
             Self::OrbitalElements(state) => state.faults(pointer, unit),
-            Self::Geodetic(_) | Self::Ecef(_) | Self::Eci(_) => Vec::new(),
+            Self::Geodetic(state) => state.faults(pointer, unit, planet),
+            Self::Ecef(_) | Self::Eci(_) => Vec::new(),
         };
         let sidereal_time = match (self.sidereal_time(), epoch) {
             (Some(SiderealTime(seconds)), _) => Some(seconds),
@@ -130,4 +131,9 @@ impl State {
 /// Reads the field that every state may have.
 fn sidereal_time(object: &mut Object) -> Option<SiderealTime> {
     if object.has("sidereal_time") { object.value("sidereal_time", SiderealTime::read) } else { None }
+}
+
+/// The length of a vector that was checked against the bound, and may exceed it by a rounding: the answer can be sent back.
+fn within(bound: Bound, length: f64) -> f64 {
+    length.min(bound.maximum)
 }

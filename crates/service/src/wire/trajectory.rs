@@ -360,7 +360,8 @@ impl Warning {
 
     /// There are no orbital elements.
     pub fn rectilinear() -> Self {
-        let detail = "the inertial motion is towards or away from the planet's centre: it has no orbital elements";
+        let detail = "the inertial motion is towards or away from the planet's centre, or so nearly that orbital elements \
+                      would not hold it: there are none";
         Self::new("rectilinear_motion", detail)
     }
 

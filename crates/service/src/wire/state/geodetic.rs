@@ -1,14 +1,15 @@
 //! The type `geodetic`.
 
 use reentry::coordinates;
+use reentry::planet::Planet;
 use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::sidereal_time;
+use super::{sidereal_time, within};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
-use crate::wire::reader::Object;
+use crate::wire::reader::{Fault, Object};
 
 /// Place and motion relative to the rotating planet, against the geodetic horizontal.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -60,6 +61,16 @@ impl Geodetic {
         })
     }
 
+    /// The altitude must not reach down beyond the centre, to the other side.
+    pub(super) fn faults(&self, pointer: &str, unit: AngleUnit, planet: &Planet) -> Vec<Fault> {
+        let state = self.to_core(unit);
+        let foot = coordinates::Geodetic { geodetic_altitude: 0.0, ..state };
+        let [here, foot] = [state, foot].map(|state| state.to_planet_fixed(&planet.shape).position);
+        let beyond = here.dot(&foot) < 0.0;
+        let detail = format!("must lie above the planet's centre, {:.0} m below the surface here", foot.norm());
+        beyond.then(|| Fault::new(format!("{pointer}/geodetic_altitude"), detail)).into_iter().collect()
+    }
+
     pub(super) fn to_core(&self, unit: AngleUnit) -> coordinates::Geodetic {
         coordinates::Geodetic {
             geodetic_altitude: self.geodetic_altitude,
@@ -78,7 +89,7 @@ impl Geodetic {
             geodetic_altitude: state.geodetic_altitude,
             longitude: unit.from_radians(state.longitude),
             geodetic_latitude: unit.from_radians(state.geodetic_latitude),
-            speed: state.speed,
+            speed: within(Bound::SPEED, state.speed),
             flight_path_angle: unit.from_radians(state.flight_path_angle),
             azimuth: unit.turn_from_radians(state.azimuth),
             sidereal_time: Some(SiderealTime(sidereal_time)),

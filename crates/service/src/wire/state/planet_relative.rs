@@ -6,7 +6,7 @@ use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::sidereal_time;
+use super::{sidereal_time, within};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
 use crate::wire::reader::{Fault, Object};
@@ -98,11 +98,11 @@ impl PlanetRelative {
     pub fn from_core(state: &FlightPath<f64>, unit: AngleUnit, sidereal_time: f64) -> Self {
         Self {
             kind: "planet_relative",
-            radius: Some(state.radius),
+            radius: Some(within(Bound::RADIUS, state.radius)),
             altitude: None,
             longitude: unit.from_radians(state.longitude),
             geocentric_latitude: unit.from_radians(state.geocentric_latitude),
-            speed: state.speed,
+            speed: within(Bound::SPEED, state.speed),
             flight_path_angle: unit.from_radians(state.flight_path_angle),
             heading: unit.from_radians(state.heading),
             sidereal_time: Some(SiderealTime(sidereal_time)),
