@@ -88,3 +88,18 @@ fn seconds(text: &str) -> Result<Duration, String> {
     let duration = Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())?;
     if duration.is_zero() { Err("must be greater than 0".to_owned()) } else { Ok(duration) }
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::{Args, Command, FromArgMatches};
+
+    use super::Config;
+
+    #[test]
+    fn the_default_is_what_the_program_has_without_flags() {
+        let command = Config::augment_args(Command::new("reentry")).mut_args(|arg| arg.env(None));
+        let parsed = command.try_get_matches_from(["reentry", "--listen", "127.0.0.1:0"]);
+        let parsed = Config::from_arg_matches(&parsed.unwrap()).unwrap();
+        assert_eq!(format!("{parsed:?}"), format!("{:?}", Config::default()));
+    }
+}

@@ -33,8 +33,9 @@ pub struct ExponentialAtmosphere {
 impl Atmosphere {
     pub(super) fn read(object: &mut Object) -> Option<Self> {
         object.choice("type", &[("exponential", ())])?;
-        let surface_density = object.number_or("surface_density", Bound::NON_NEGATIVE, 1.547_93);
-        let scale_height = object.number_or("scale_height", Bound::POSITIVE, 6935.0);
+        let CoreAtmosphere::Exponential { surface_density, scale_height } = CoreAtmosphere::EARTH_JAMESON;
+        let surface_density = object.number_or("surface_density", Bound::NON_NEGATIVE, surface_density);
+        let scale_height = object.number_or("scale_height", Bound::POSITIVE, scale_height);
         Some(Self::Exponential(ExponentialAtmosphere {
             kind: "exponential",
             surface_density: surface_density?,

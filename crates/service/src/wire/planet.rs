@@ -32,6 +32,7 @@ pub enum Shape {
 }
 
 /// The planet. The four numbers are given with the model `custom`, and only there.
+// The numbers stand here for the schema; what flies is `core`.
 #[derive(Clone, Copy, Debug, ToSchema)]
 pub struct Planet {
     /// Which planet.
