@@ -111,3 +111,45 @@ async fn peaks_agree() {
         }
     }
 }
+
+/// Jameson 2006, Tables 1 and 3: the initial conditions that its program made, to their printed digits.
+#[tokio::test]
+async fn conversions_are_those_of_the_thesis() {
+    let service = Service::new();
+    let cases = thesis_cases();
+    let state = async |name: &str| {
+        let case = cases.iter().find(|case| case.name == name && case.model == "earth_jameson_listing").unwrap();
+        let request = json!({"planet": case.request["planet"], "state": case.request["initial_state"]});
+        service.post("/convert", &request).await.json()["planet_relative"].clone()
+    };
+    let field = |state: &Value, name: &str| state[name].as_f64().unwrap();
+    // Half a unit of the last printed digit; r is printed to 100 m and to 1 km, θ in Table 1 plus a full turn.
+    for (name, r, theta, phi, v, gamma, psi) in [
+        (
+            "target_1",
+            (6_774_400.0, 50.0),
+            (4.4943, 5e-5),
+            (0.5903, 5e-5),
+            (18_220.0, 0.5),
+            (-1.2217, 5e-5),
+            (1.1506, 5e-5),
+        ),
+        (
+            "impulse",
+            (6_946_000.0, 500.0),
+            (-1.374, 5e-4),
+            (0.772, 5e-4),
+            (5194.5, 0.05),
+            (1.0775, 5e-5),
+            (-2.7926, 5e-5),
+        ),
+    ] {
+        let state = state(name).await;
+        near(name, field(&state, "radius"), r.0, r.1);
+        angle(name, field(&state, "longitude"), theta.0, theta.1);
+        near(name, field(&state, "geocentric_latitude"), phi.0, phi.1);
+        near(name, field(&state, "speed"), v.0, v.1);
+        near(name, field(&state, "flight_path_angle"), gamma.0, gamma.1);
+        near(name, field(&state, "heading"), psi.0, psi.1);
+    }
+}
