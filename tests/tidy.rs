@@ -20,7 +20,7 @@ const SERVICE: [&[&str]; 8] = [
     &["wire", "config", "middleware"],
     &["error", "telemetry"],
     &["compute", "format", "openapi"],
-    &["state"],
+    &["answer", "state"],
     &["extract"],
     &["endpoints"],
     &["router"],

@@ -2,6 +2,7 @@
 //!
 //! Read [`router`] first, then [`endpoints`]; [`wire`] holds the JSON, [`compute`] the threads.
 
+pub mod answer;
 pub mod compute;
 pub mod config;
 pub mod endpoints;

@@ -5,6 +5,7 @@ use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 
+use crate::answer;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
@@ -25,12 +26,6 @@ use crate::wire::json;
 )]
 pub async fn convert(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;
-    let body = app
-        .compute
-        .run(move |_| {
-            let response = ConvertResponse::try_from_tree(json::parse(&body)?).map_err(ApiError::Invalid)?;
-            Ok(serde_json::to_vec(&response)?)
-        })
-        .await?;
+    let body = app.compute.run(move |_| answer::convert(json::parse(&body)?)).await?;
     Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
 }
