@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use num_dual::Dual64;
-use reentry::integrate::{IntegrationError, Integrator, Limits, Step, System, event};
+use reentry::integrate::{IntegrationError, Integrator, Interpolant, Limits, Pace, Step, System, event, follow};
 use reentry::motion::{Cartesian, Spherical};
 use reentry::scalar::Scalar;
 
@@ -13,14 +13,16 @@ use crate::flights::target_2;
 /// The plane Kepler problem with eccentricity 0.5 from periapsis: period 2π, energy -1/2.
 struct Kepler;
 
-impl System<4> for Kepler {
-    fn derivative<S: Scalar>(&self, state: &[S; 4]) -> [S; 4] {
+impl<S: Scalar> System<S, 4> for Kepler {
+    fn derivative(&self, state: &[S; 4]) -> [S; 4] {
         let [x, y, vx, vy] = *state;
         let squared = x * x + y * y;
         let pull = (squared * squared.sqrt()).recip();
         [vx, vy, -x * pull, -y * pull]
     }
+}
 
+impl Pace<4> for Kepler {
     fn magnitudes(&self) -> [f64; 4] {
         [1.0; 4]
     }
@@ -42,7 +44,7 @@ fn limits(relative_tolerance: f64, interrupt: &AtomicBool) -> Limits<'_> {
 }
 
 /// One step of a given length, whatever its error.
-fn single_step(length: f64) -> Step<f64, 4> {
+fn single_step(length: f64) -> Step<4> {
     let interrupt = AtomicBool::new(false);
     let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-10, &interrupt));
     let step = integrator.advance(length).unwrap();
@@ -65,7 +67,8 @@ fn the_error_of_a_step_falls_with_the_ninth_power_of_its_length() {
 fn the_error_of_the_dense_output_falls_with_the_eighth_power_of_the_step() {
     let worst = |length: f64| {
         let step = single_step(length);
-        let errors = (1..20).map(|part| f64::from(part) / 20.0).map(|part| distance(&step.state(part), part * length));
+        let inside = step.interpolant(&Kepler);
+        let errors = (1..20).map(|part| f64::from(part) / 20.0).map(|part| distance(&inside.state(part), part * length));
         errors.fold(0.0, f64::max)
     };
     let order = (worst(0.2) / worst(0.1)).log2();
@@ -75,10 +78,11 @@ fn the_error_of_the_dense_output_falls_with_the_eighth_power_of_the_step() {
 #[test]
 fn the_dense_output_meets_both_ends_and_their_slopes() {
     let step = single_step(0.3);
+    let inside = step.interpolant(&Kepler);
     for i in 0..4 {
-        near("start", step.state(0.0)[i], step.start[i], 0.0);
-        near("end", step.state(1.0)[i], step.end[i], 1e-15);
-        let slope = |part: f64| (step.state(part + 1e-6)[i] - step.state(part - 1e-6)[i]) / (2e-6 * 0.3);
+        near("start", inside.state(0.0)[i], step.start[i], 0.0);
+        near("end", inside.state(1.0)[i], step.end[i], 1e-15);
+        let slope = |part: f64| (inside.state(part + 1e-6)[i] - inside.state(part - 1e-6)[i]) / (2e-6 * 0.3);
         near("slope at the start", slope(0.0), step.start_derivative[i], 1e-8);
         near("slope at the end", slope(1.0), step.end_derivative[i], 1e-8);
     }
@@ -109,11 +113,13 @@ fn the_global_error_follows_the_tolerance() {
 fn evaluations_are_counted() {
     use std::cell::Cell;
     struct Counting(Cell<usize>);
-    impl System<1> for Counting {
-        fn derivative<S: Scalar>(&self, state: &[S; 1]) -> [S; 1] {
+    impl<S: Scalar> System<S, 1> for Counting {
+        fn derivative(&self, state: &[S; 1]) -> [S; 1] {
             self.0.set(self.0.get() + 1);
             [-state[0] * state[0]]
         }
+    }
+    impl Pace<1> for Counting {
         fn magnitudes(&self) -> [f64; 1] {
             [1.0]
         }
@@ -126,16 +132,22 @@ fn evaluations_are_counted() {
         integrator.shorten(&step, step.time(0.5));
     }
     assert_eq!(integrator.statistics().evaluations, system.0.get());
+    let step = integrator.advance(100.0).unwrap();
+    let before = system.0.get();
+    step.interpolant(&system);
+    assert_eq!(system.0.get(), before + Interpolant::<1>::EVALUATIONS);
 }
 
 #[test]
 fn a_step_that_is_not_finite_is_rejected() {
     /// Falls to the edge of what it is defined on: y = (1 - t)², not a number beyond y = 0.
     struct Edge;
-    impl System<1> for Edge {
-        fn derivative<S: Scalar>(&self, state: &[S; 1]) -> [S; 1] {
+    impl<S: Scalar> System<S, 1> for Edge {
+        fn derivative(&self, state: &[S; 1]) -> [S; 1] {
             [state[0].sqrt() * -2.0]
         }
+    }
+    impl Pace<1> for Edge {
         fn magnitudes(&self) -> [f64; 1] {
             [1.0]
         }
@@ -161,10 +173,12 @@ fn a_step_that_is_not_finite_is_rejected() {
 #[test]
 fn a_system_without_a_finite_slope_is_refused() {
     struct Nowhere;
-    impl System<1> for Nowhere {
-        fn derivative<S: Scalar>(&self, _: &[S; 1]) -> [S; 1] {
+    impl<S: Scalar> System<S, 1> for Nowhere {
+        fn derivative(&self, _: &[S; 1]) -> [S; 1] {
             [S::from(f64::NAN)]
         }
+    }
+    impl Pace<1> for Nowhere {
         fn magnitudes(&self) -> [f64; 1] {
             [1.0]
         }
@@ -185,7 +199,7 @@ fn the_flag_ends_the_integration_before_the_next_step() {
 }
 
 /// The derivative in dual numbers: the same digits as in `f64`, and the slopes of central differences.
-fn duals_agree<F: System<6>>(what: &str, motion: &F, state: [f64; 6]) {
+fn duals_agree<F: System<f64, 6> + System<Dual64, 6>>(what: &str, motion: &F, state: [f64; 6]) {
     let plain = motion.derivative(&state);
     for component in 0..6 {
         let step = 1e-6 * state[component].abs().max(1.0);
@@ -224,32 +238,24 @@ fn the_derivative_in_dual_numbers_has_the_same_value_and_the_right_slopes() {
 }
 
 #[test]
-fn an_integration_in_dual_numbers_takes_the_steps_of_its_values() {
+fn steps_followed_in_dual_numbers_end_at_the_same_digits_and_with_the_right_slopes() {
     let interrupt = AtomicBool::new(false);
-    let seeded = PERIAPSIS.map(Dual64::from);
-    let speed = Dual64::new(PERIAPSIS[3], 1.0);
-    let mut plain = Integrator::new(&Kepler, PERIAPSIS, limits(1e-10, &interrupt));
-    let mut dual = Integrator::new(&Kepler, [seeded[0], seeded[1], seeded[2], speed], limits(1e-10, &interrupt));
-    let fly = |speed: f64| {
-        let mut integrator = Integrator::new(&Kepler, [0.5, 0.0, 0.0, speed], limits(1e-13, &interrupt));
-        loop {
-            let step = integrator.advance(5.0).unwrap();
-            if step.end_time >= 5.0 {
-                break step.end;
-            }
+    let fly = |speed: f64, tolerance: f64| {
+        let mut integrator = Integrator::new(&Kepler, [0.5, 0.0, 0.0, speed], limits(tolerance, &interrupt));
+        let mut steps = Vec::new();
+        while steps.last().is_none_or(|step: &Step<4>| step.end_time < 5.0) {
+            steps.push(integrator.advance(5.0).unwrap());
         }
+        steps
     };
-    let slopes = loop {
-        let (plain, dual) = (plain.advance(5.0).unwrap(), dual.advance(5.0).unwrap());
-        assert_eq!(plain.end_time.to_bits(), dual.end_time.to_bits());
-        assert_eq!(plain.end.map(f64::to_bits), dual.end.map(|x| x.re.to_bits()));
-        if plain.end_time >= 5.0 {
-            break dual.end.map(|x| x.eps);
-        }
-    };
-    let (above, below) = (fly(PERIAPSIS[3] + 1e-5), fly(PERIAPSIS[3] - 1e-5));
+    let steps = fly(PERIAPSIS[3], 1e-10);
+    let [x, y, vx, vy] = PERIAPSIS;
+    let end = follow(&Kepler, [x.into(), y.into(), vx.into(), Dual64::new(vy, 1.0)], &steps);
+    let last = |steps: Vec<Step<4>>| steps.last().unwrap().end;
+    assert_eq!(end.map(|x| x.re.to_bits()), last(steps).map(f64::to_bits));
+    let (above, below) = (last(fly(vy + 1e-5, 1e-13)), last(fly(vy - 1e-5, 1e-13)));
     for i in 0..4 {
-        relative("slope by the initial speed", slopes[i], (above[i] - below[i]) / 2e-5, 1e-6);
+        relative("slope by the initial speed", end[i].eps, (above[i] - below[i]) / 2e-5, 1e-6);
     }
 }
 

@@ -28,7 +28,7 @@ impl Atmosphere {
     #[inline(always)]
     pub fn density<S: Scalar>(&self, altitude: S) -> S {
         let Self::Exponential { surface_density, scale_height } = *self;
-        let height = altitude / scale_height;
+        let height = altitude * (1.0 / scale_height);
         let clamped = S::select(height.less_than(-700.0), S::from(-700.0), height);
         (-clamped).exp() * surface_density
     }

@@ -1,23 +1,26 @@
 //! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), its error kept below a tolerance step by step.
 //!
 //! This module knows nothing of flight: a [`System`] says how the state changes, an [`Integrator`] takes steps,
-//! a [`Step`] gives the state at every instant inside it, and [`event`] looks there for falls through zero and for maxima.
+//! the [`Interpolant`] of a [`Step`] gives the state at every instant inside it, and [`event`] looks there for falls through zero and
+//! for maxima.
 
 pub mod event;
 mod step;
 mod tableau;
 
-pub use step::Step;
+pub use step::{Interpolant, Step, follow};
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::scalar::Scalar;
 
 /// A system of `N` ordinary differential equations that do not depend on time.
-pub trait System<const N: usize> {
+pub trait System<S, const N: usize> {
     /// The rate of change of each component of the state.
-    fn derivative<S: Scalar>(&self, state: &[S; N]) -> [S; N];
+    fn derivative(&self, state: &[S; N]) -> [S; N];
+}
 
+/// What a system says about the length of its steps.
+pub trait Pace<const N: usize>: System<f64, N> {
     /// The typical size of each component; a component's tolerance is relative to the larger of its size and this.
     fn magnitudes(&self) -> [f64; N];
 
@@ -76,34 +79,28 @@ pub struct Limits<'a> {
 
 /// Advances a state step by step.
 #[derive(Debug)]
-pub struct Integrator<'a, F, S, const N: usize> {
+pub struct Integrator<'a, F, const N: usize> {
     system: &'a F,
-    limits: Limits<'a>,
-    time: f64,
-    state: [S; N],
-    derivative: [S; N],
-    proposal: f64,
-    statistics: Statistics,
+    control: Control<'a, N>,
+    state: [f64; N],
+    derivative: [f64; N],
 }
 
-impl<'a, F: System<N>, S: Scalar, const N: usize> Integrator<'a, F, S, N> {
+impl<'a, F: Pace<N>, const N: usize> Integrator<'a, F, N> {
     /// Starts at t = 0 with the given state.
-    pub fn new(system: &'a F, state: [S; N], limits: Limits<'a>) -> Self {
+    pub fn new(system: &'a F, state: [f64; N], limits: Limits<'a>) -> Self {
         let derivative = system.derivative(&state);
-        let mut integrator =
-            Self { system, limits, time: 0.0, state, derivative, proposal: 0.0, statistics: Statistics::default() };
-        integrator.proposal = integrator.first_step();
-        integrator.statistics.evaluations = 2;
-        integrator
+        let control = Control::new(system, &state, &derivative, limits);
+        Self { system, control, state, derivative }
     }
 
     /// What the steps so far cost.
     pub fn statistics(&self) -> Statistics {
-        self.statistics
+        self.control.statistics
     }
 
     /// The rate of change at the present state.
-    pub fn derivative(&self) -> &[S; N] {
+    pub fn derivative(&self) -> &[f64; N] {
         &self.derivative
     }
 
@@ -111,96 +108,128 @@ impl<'a, F: System<N>, S: Scalar, const N: usize> Integrator<'a, F, S, N> {
     ///
     /// # Errors
     /// When the limit of steps is reached, no step meets the tolerance, or the flag is raised.
-    pub fn advance(&mut self, end: f64) -> Result<Step<S, N>, IntegrationError> {
-        let longest = self.system.longest_step(&values(&self.state), &values(&self.derivative));
-        let mut length = self.proposal.min(longest);
-        let mut growth = GREATEST_GROWTH;
+    pub fn advance(&mut self, end: f64) -> Result<Step<N>, IntegrationError> {
+        let longest = self.system.longest_step(&self.state, &self.derivative);
+        self.control.length = self.control.length.min(longest);
         loop {
-            self.check_limits()?;
-            // A remainder below one per cent of a step is taken along.
-            let step_end = if self.time + length * 1.01 >= end { end } else { self.time + length };
-            length = step_end - self.time;
-            if length.is_nan() || length <= LEAST_LENGTH * end {
-                return Err(IntegrationError::StepTooSmall { time: self.time });
+            let start_time = self.control.time;
+            let end_time = self.control.trial_end(end)?;
+            let trial = step::attempt(self.system, &self.state, &self.derivative, end_time - start_time);
+            let error = self.control.error(&self.state, &trial);
+            if self.control.accepts(error, end_time) {
+                let end_derivative = self.system.derivative(&trial.end);
+                return Ok(self.take(trial.into_step(start_time, end_time, &self.state, end_derivative)));
             }
-
-            let trial = step::attempt(self.system, &self.state, &self.derivative, length);
-            self.statistics.evaluations += step::TRIAL_EVALUATIONS;
-            let error = self.error(&trial, length);
-            if error < 1.0 {
-                let accepted = step::complete(self.system, self.time, step_end, &self.state, &trial);
-                self.statistics.evaluations += step::COMPLETION_EVALUATIONS;
-                self.statistics.steps += 1;
-                self.proposal = length * growth.min(SAFETY * error.powf(-1.0 / ORDER)).max(LEAST_GROWTH);
-                self.time = step_end;
-                self.state = accepted.end;
-                self.derivative = accepted.end_derivative;
-                return Ok(accepted);
-            }
-            self.statistics.rejected_steps += 1;
-            growth = 1.0;
-            length *= if error.is_finite() {
-                (SAFETY * error.powf(-1.0 / ORDER)).max(LEAST_GROWTH)
-            } else {
-                NOT_FINITE_SHRINK
-            };
         }
     }
 
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
-    pub fn shorten(&mut self, step: &Step<S, N>, end: f64) -> Step<S, N> {
+    pub fn shorten(&mut self, step: &Step<N>, end: f64) -> Step<N> {
         let trial = step::attempt(self.system, &step.start, &step.start_derivative, end - step.start_time);
-        self.statistics.evaluations += step::TRIAL_EVALUATIONS + step::COMPLETION_EVALUATIONS;
-        let shorter = step::complete(self.system, step.start_time, end, &step.start, &trial);
-        self.time = end;
-        self.state = shorter.end;
-        self.derivative = shorter.end_derivative;
-        shorter
+        self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
+        self.control.time = end;
+        let end_derivative = self.system.derivative(&trial.end);
+        self.take(trial.into_step(step.start_time, end, &step.start, end_derivative))
     }
 
-    fn check_limits(&self) -> Result<(), IntegrationError> {
+    fn take(&mut self, step: Step<N>) -> Step<N> {
+        self.state = step.end;
+        self.derivative = step.end_derivative;
+        step
+    }
+}
+
+/// The control of the length of the steps: each as long as the tolerance allows.
+#[derive(Debug)]
+struct Control<'a, const N: usize> {
+    limits: Limits<'a>,
+    magnitudes: [f64; N],
+    /// Of the last accepted step's end, s.
+    time: f64,
+    /// Proposed for the next step, s.
+    length: f64,
+    /// By how much the step after the next may be longer.
+    growth: f64,
+    statistics: Statistics,
+}
+
+impl<'a, const N: usize> Control<'a, N> {
+    fn new<F: Pace<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
+        let magnitudes = system.magnitudes();
+        let statistics = Statistics { evaluations: 2, ..Statistics::default() };
+        let mut control = Self { limits, magnitudes, time: 0.0, length: 0.0, growth: GREATEST_GROWTH, statistics };
+        control.length = control.first_step(system, state, derivative);
+        control
+    }
+
+    /// Where the next trial step ends, s.
+    fn trial_end(&mut self, end: f64) -> Result<f64, IntegrationError> {
         let Limits { steps: limit, interrupt, .. } = self.limits;
+        let time = self.time;
         if interrupt.load(Ordering::Relaxed) {
-            return Err(IntegrationError::Interrupted { time: self.time });
+            return Err(IntegrationError::Interrupted { time });
         }
         if self.statistics.steps + self.statistics.rejected_steps >= limit {
-            return Err(IntegrationError::StepLimit { time: self.time, limit });
+            return Err(IntegrationError::StepLimit { time, limit });
         }
-        Ok(())
+        // A remainder below one per cent of a step is taken along.
+        let trial_end = if time + self.length * 1.01 >= end { end } else { time + self.length };
+        self.length = trial_end - time;
+        if self.length.is_nan() || self.length <= LEAST_LENGTH * end {
+            return Err(IntegrationError::StepTooSmall { time });
+        }
+        Ok(trial_end)
+    }
+
+    /// Whether the error of the trial step is small enough; proposes the length of the next one.
+    fn accepts(&mut self, error: f64, trial_end: f64) -> bool {
+        self.statistics.evaluations += step::TRIAL_EVALUATIONS;
+        // The eighth root.
+        let fitting = SAFETY / error.sqrt().sqrt().sqrt();
+        let accepted = error < 1.0;
+        if accepted {
+            self.statistics.evaluations += 1;
+            self.statistics.steps += 1;
+            self.time = trial_end;
+            self.length *= self.growth.min(fitting).max(LEAST_GROWTH);
+            self.growth = GREATEST_GROWTH;
+        } else {
+            self.statistics.rejected_steps += 1;
+            self.length *= if error.is_finite() { fitting.max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK };
+            self.growth = 1.0;
+        }
+        accepted
     }
 
     /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
-    fn error(&self, trial: &step::Trial<S, N>, length: f64) -> f64 {
-        let magnitudes = self.system.magnitudes();
+    fn error(&self, start: &[f64; N], trial: &step::Trial<f64, N>) -> f64 {
         let [mut fifth, mut third] = [0.0; 2];
-        for (i, magnitude) in magnitudes.iter().enumerate() {
-            let size = self.state[i].value().abs().max(trial.end[i].value().abs()).max(*magnitude);
-            let tolerance = self.limits.relative_tolerance * size;
-            fifth += (trial.error_fifth[i].value() / tolerance).powi(2);
-            third += (trial.error_third[i].value() / tolerance).powi(2);
+        for i in 0..N {
+            let size = start[i].abs().max(trial.end[i].abs()).max(self.magnitudes[i]);
+            let weight = 1.0 / (self.limits.relative_tolerance * size);
+            fifth += (trial.error_fifth[i] * weight).powi(2);
+            third += (trial.error_third[i] * weight).powi(2);
         }
         if fifth == 0.0 && third == 0.0 {
             return f64::MIN_POSITIVE;
         }
         #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
         let denominator = ((fifth + third * 0.01) * N as f64).sqrt();
-        length * fifth / denominator
+        self.length * fifth / denominator
     }
 
     /// The length of the first step, from the sizes of the first and second derivative (Hairer, Nørsett, Wanner, section II.4).
-    fn first_step(&self) -> f64 {
-        let magnitudes = self.system.magnitudes();
-        let state = values(&self.state);
-        let slope = values(&self.derivative);
+    fn first_step<F: Pace<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
         let norm = |vector: &[f64; N]| {
-            let component = |i: usize| vector[i] / (self.limits.relative_tolerance * state[i].abs().max(magnitudes[i]));
+            let size = |i: usize| state[i].abs().max(self.magnitudes[i]);
+            let component = |i: usize| vector[i] / (self.limits.relative_tolerance * size(i));
             (0..N).map(component).map(|x| x * x).sum::<f64>().sqrt()
         };
-        let first = norm(&slope);
-        let guess = if first > 0.0 { 0.01 * norm(&state) / first } else { 1e-6 };
-        let guess = guess.min(self.system.longest_step(&state, &slope));
+        let first = norm(slope);
+        let guess = if first > 0.0 { 0.01 * norm(state) / first } else { 1e-6 };
+        let guess = guess.min(system.longest_step(state, slope));
         let euler = std::array::from_fn(|i| state[i] + slope[i] * guess);
-        let next_slope: [f64; N] = self.system.derivative(&euler);
+        let next_slope = system.derivative(&euler);
         let second = norm(&std::array::from_fn(|i| next_slope[i] - slope[i])) / guess;
         let steepest = first.max(second);
         let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };
@@ -216,7 +245,3 @@ const GREATEST_GROWTH: f64 = 6.0;
 const NOT_FINITE_SHRINK: f64 = 0.1;
 /// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.
 const LEAST_LENGTH: f64 = 1e-18;
-
-fn values<S: Scalar, const N: usize>(state: &[S; N]) -> [f64; N] {
-    state.map(Scalar::value)
-}

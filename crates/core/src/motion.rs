@@ -11,10 +11,10 @@ use num_dual::Dual64;
 
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::PlanetFixed;
-use crate::integrate::System;
+use crate::integrate::Pace;
 use crate::planet::Planet;
-use crate::scalar::{Scalar, direction, length};
-use crate::vehicle::Vehicle;
+use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
+use crate::vehicle::{Aerodynamics, Coefficients};
 
 /// The unit of the load factor, m/s²: the standard acceleration of gravity (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
@@ -27,18 +27,33 @@ const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
 /// Times of drag that a step may last; see [`Forces::longest_step`].
 const DRAG_TIMES_A_STEP: f64 = 1.5;
 
-/// What acts on the vehicle.
+/// What acts on the vehicle; the parameters may carry derivatives, or belong to several vehicles side by side.
 #[derive(Clone, Copy, Debug)]
-pub struct Forces {
-    /// Where it flies.
-    pub planet: Planet,
-    /// The air, which turns with the planet.
-    pub atmosphere: Atmosphere,
-    /// What flies.
-    pub vehicle: Vehicle,
-    /// Sine and cosine of the bank angle σ: 0 lift in the plane of radius and velocity, upward;
+pub struct Forces<P = f64> {
+    planet: Planet,
+    atmosphere: Atmosphere,
+    aerodynamics: Aerodynamics,
+    parameters: Parameters<P>,
+    area_over_mass: P,
+    sin_cos_bank: (P, P),
+}
+
+/// The numbers of a case that may vary, beside its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters<P> {
+    /// kg.
+    pub mass: P,
+    /// m².
+    pub reference_area: P,
+    /// What the lift coefficient has beyond that of the aerodynamics; 0 by itself.
+    pub more_lift: P,
+    /// What the drag coefficient has beyond that of the aerodynamics; 0 by itself.
+    pub more_drag: P,
+    /// Density over that of the atmosphere; 1 by itself.
+    pub density_factor: P,
+    /// σ, rad: 0 lift in the plane of radius and velocity, upward;
     /// positive tilts it to the left of the flight direction, towards growing heading (Jameson 2006, equation 22).
-    pub sin_cos_bank: (f64, f64),
+    pub bank_angle: P,
 }
 
 /// What the air does to the vehicle at an instant.
@@ -57,9 +72,9 @@ pub struct Loads<S> {
 }
 
 /// A formulation: six numbers that hold the state, and how they change.
-pub trait Formulation: System<6> {
+pub trait Formulation: Pace<6> {
     /// The six numbers of a state.
-    fn coordinates(state: &PlanetFixed<f64>) -> [f64; 6];
+    fn coordinates<S: Scalar>(state: &PlanetFixed<S>) -> [S; 6];
 
     /// The state of six numbers.
     fn planet_fixed<S: Scalar>(coordinates: &[S; 6]) -> PlanetFixed<S>;
@@ -82,7 +97,22 @@ pub enum Singularity {
     Rest,
 }
 
-impl Forces {
+/// What a unit of density does to the vehicle, at full lift: accelerations over the density, m⁴/(kg s²).
+struct Air<S> {
+    /// D/(m ρ), against the velocity.
+    drag: S,
+    /// L/(m ρ), across the velocity.
+    lift: S,
+}
+
+impl<P: Scalar> Forces<P> {
+    /// The forces on a vehicle of these aerodynamics, with these parameters.
+    pub fn new(planet: Planet, atmosphere: Atmosphere, aerodynamics: Aerodynamics, parameters: Parameters<P>) -> Self {
+        let area_over_mass = parameters.reference_area * parameters.mass.recip();
+        let sin_cos_bank = parameters.bank_angle.sin_cos();
+        Self { planet, atmosphere, aerodynamics, parameters, area_over_mass, sin_cos_bank }
+    }
+
     /// The acceleration relative to the rotating planet, m/s².
     ///
     /// ```text
@@ -93,32 +123,61 @@ impl Forces {
     /// # Reference
     /// Jameson 2006, equations 17 and 21 to 23, without the step to the vehicle-pointing axes.
     #[inline(always)]
-    pub fn acceleration<S: Scalar>(&self, state: &PlanetFixed<S>) -> Vector3<S> {
+    pub fn acceleration<S: Over<P>>(&self, state: &PlanetFixed<S>) -> Vector3<S> {
         let PlanetFixed { position, velocity } = state;
-        let radius = length(position);
-        let speed = length(velocity);
-        let up = direction(position, radius);
-        let ahead = direction(velocity, speed);
-
-        let density = self.atmosphere.density(self.planet.shape.altitude(position));
-        let air = self.vehicle.aerodynamic_acceleration(dynamic_pressure(density, speed));
-        let left = up.cross(&ahead);
-        let lift = air.lift * lift_fade_over_cosine(left.dot(&left));
+        let Directions { radius, speed, up, ahead, left, cos_gamma } = Directions::of(state);
+        let air = self.air(speed);
+        let lift = air.lift * lift_fade_over_cosine(cos_gamma);
         let (sin_bank, cos_bank) = self.sin_cos_bank;
         let lift_up = lift * cos_bank;
         let lift_left = lift * sin_bank;
-        let ahead_share = -(air.drag + lift_up * up.dot(&ahead));
+        let against = air.drag + lift_up * up.dot(&ahead);
         let gravity = self.planet.gravity(radius);
 
         let rotation = self.planet.rotation_rate;
-        let coriolis = [velocity.y * (2.0 * rotation), velocity.x * (-2.0 * rotation)];
         let centrifugal = rotation * rotation;
-        let mut acceleration = ahead.map(|component| component * ahead_share)
-            + up.map(|component| component * (lift_up - gravity))
-            + left.map(|component| component * lift_left);
-        acceleration.x += coriolis[0] + position.x * centrifugal;
-        acceleration.y += coriolis[1] + position.y * centrifugal;
-        acceleration
+        let mut fall = up.map(|component| component * -gravity);
+        fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
+        fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
+
+        // The density, an exponential, is what all else would wait for.
+        let density = self.density(self.planet.shape.altitude(position));
+        Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density + fall[i])
+    }
+
+    /// ρ, kg/m³, at an altitude, m.
+    #[inline(always)]
+    fn density<S: Over<P>>(&self, altitude: S) -> S {
+        self.atmosphere.density(altitude) * self.parameters.density_factor
+    }
+
+    /// What the air does to a vehicle of a speed, m/s.
+    ///
+    /// ```text
+    /// D = ½ ρ V² S C_D,   L = ½ ρ V² S C_L
+    /// ```
+    ///
+    /// # Reference
+    /// Jameson 2006, equations 36 and 37.
+    #[inline(always)]
+    fn air<S: Over<P>>(&self, speed: S) -> Air<S> {
+        let acceleration = speed * speed * 0.5 * self.area_over_mass;
+        let (lift_coefficient, drag_coefficient) = self.coefficients();
+        Air { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient }
+    }
+
+    /// `C_L` and `C_D`.
+    #[inline(always)]
+    fn coefficients(&self) -> (P, P) {
+        let Coefficients { lift, drag } = self.aerodynamics.coefficients();
+        (self.parameters.more_lift + lift, self.parameters.more_drag + drag)
+    }
+}
+
+impl Forces {
+    /// Where it flies.
+    pub fn planet(&self) -> &Planet {
+        &self.planet
     }
 
     /// The units of length, m, and speed, m/s, in which the equations are of order one: r₀ and √(g₀r₀).
@@ -149,47 +208,70 @@ impl Forces {
         let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
 
         let speed = length(velocity);
-        let pressure = dynamic_pressure(self.atmosphere.density(altitude), speed);
-        let air = self.vehicle.aerodynamic_acceleration(pressure);
-        let drag_time = speed / air.drag.hypot(air.lift);
+        let air = self.air(speed);
+        let drag_time = speed / (air.drag.max(air.lift.abs()) * self.density(altitude));
         if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
     /// The loads in a state.
-    pub fn loads<S: Scalar>(&self, state: &PlanetFixed<S>) -> Loads<S> {
-        let PlanetFixed { position, velocity } = state;
-        let speed = length(velocity);
+    pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, state: &PlanetFixed<S>) -> Loads<S> {
+        let position = &state.position;
+        let Directions { radius, speed, up, ahead, cos_gamma, .. } = Directions::of(state);
         let altitude = self.planet.shape.altitude(position);
-        let density = self.atmosphere.density(altitude);
-        let dynamic_pressure = dynamic_pressure(density, speed);
-        // Per unit of dynamic pressure, so that the squares of tiny forces do not vanish.
-        let air = self.vehicle.aerodynamic_acceleration(S::one());
-        let cos_squared = cos_squared_flight_path_angle(state);
-        let lift = air.lift * lift_fade_over_cosine(cos_squared) * cos_squared.sqrt();
-        let acceleration = self.acceleration(state);
-        let at_rest = speed.less_than(f64::MIN_POSITIVE);
-        let along = acceleration.dot(&direction(velocity, speed));
-        Loads {
-            altitude,
-            density,
-            dynamic_pressure,
-            deceleration: -S::select(at_rest, length(&acceleration), along),
-            load_factor: dynamic_pressure * (air.drag * air.drag + lift * lift).sqrt() / STANDARD_GRAVITY,
+        let density = self.density(altitude);
+        let dynamic_pressure = density * speed * speed * 0.5;
+        let deceleration = if speed.less_than(f64::MIN_POSITIVE) {
+            -length(&self.acceleration(state))
+        } else {
+            // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
+            let outward = position.x * ahead.x + position.y * ahead.y;
+            self.air(speed).drag * density + self.planet.gravity(radius) * up.dot(&ahead) - outward * self.planet.rotation_rate.powi(2)
+        };
+        let (lift_coefficient, drag_coefficient) = self.coefficients();
+        let lift_coefficient = lift_fade_over_cosine(cos_gamma) * cos_gamma * lift_coefficient;
+        // The squares of coefficients, since those of tiny forces would vanish.
+        let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
+        let load_factor = dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY);
+        Loads { altitude, density, dynamic_pressure, deceleration, load_factor }
+    }
+}
+
+/// Where a state points.
+struct Directions<S: nalgebra::Scalar> {
+    radius: S,
+    speed: S,
+    /// r̂.
+    up: Vector3<S>,
+    /// v̂; zero at rest.
+    ahead: Vector3<S>,
+    /// r̂ × v̂, of length cos γ.
+    left: Vector3<S>,
+    cos_gamma: S,
+}
+
+impl<S: Scalar> Directions<S> {
+    #[inline(always)]
+    fn of(state: &PlanetFixed<S>) -> Self {
+        let PlanetFixed { position, velocity } = state;
+        // The three roots do not wait for each other.
+        let across = position.cross(velocity);
+        let (radius, speed, moment) = (length(position), length(velocity), length(&across));
+        let (over_radius, over_speed) = (reciprocal_or_one(radius), reciprocal_or_one(speed));
+        let over_both = over_radius * over_speed;
+        Self {
+            radius,
+            speed,
+            up: position.map(|component| component * over_radius),
+            ahead: velocity.map(|component| component * over_speed),
+            left: across.map(|component| component * over_both),
+            cos_gamma: moment * over_both,
         }
     }
 }
 
-/// ½ρV², Pa.
-#[inline(always)]
-fn dynamic_pressure<S: Scalar>(density: S, speed: S) -> S {
-    density * speed * speed * 0.5
-}
-
 /// cos²γ, the squared sine of the angle between radius and velocity; 0 at rest.
 pub fn cos_squared_flight_path_angle<S: Scalar>(state: &PlanetFixed<S>) -> S {
-    let up = direction(&state.position, length(&state.position));
-    let ahead = direction(&state.velocity, length(&state.velocity));
-    let left = up.cross(&ahead);
+    let left = Directions::of(state).left;
     left.dot(&left)
 }
 
@@ -199,12 +281,11 @@ pub fn cos_squared_flight_path_angle<S: Scalar>(state: &PlanetFixed<S>) -> S {
 /// the flight down past the vertical would jump to the opposite side. The fade makes the equations smooth there,
 /// and is 1 outside the cone.
 #[inline(always)]
-fn lift_fade_over_cosine<S: Scalar>(cos_squared: S) -> S {
-    let cosine = cos_squared.sqrt();
-    let x = cosine / LIFT_FADE_ANGLE;
+fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
+    let x = cos_gamma / LIFT_FADE_ANGLE;
     let faded = x * x * (x * (x * 6.0 - 15.0) + 10.0) / LIFT_FADE_ANGLE;
-    let in_cone = cosine.less_than(LIFT_FADE_ANGLE);
-    let full = S::select(in_cone, S::one(), cosine).recip();
+    let in_cone = cos_gamma.less_than(LIFT_FADE_ANGLE);
+    let full = S::select(in_cone, S::one(), cos_gamma).recip();
     S::select(in_cone, faded, full)
 }
 

@@ -2,13 +2,13 @@
 
 /// Finds a zero of `function` between `a` and `b`, where it takes the values `fa` and `fb` of opposite sign (or zero).
 ///
-/// Inverse quadratic interpolation where it can be trusted, bisection elsewhere; ends at the resolution of `f64`
-/// and after at most 200 evaluations. Returns the point with the smallest value that was seen.
+/// Inverse quadratic interpolation where it can be trusted, bisection elsewhere; ends where the zero is known to `resolution`
+/// or to that of `f64`, and after at most 200 evaluations. Returns the point with the smallest value that was seen.
 ///
 /// # Reference
 /// T. R. Chandrupatla, A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
 /// using derivatives, Advances in Engineering Software 28 (1997) 145-149.
-pub fn bracketed(mut function: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64)) -> f64 {
+pub fn bracketed(mut function: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), resolution: f64) -> f64 {
     let [(mut x1, mut f1), (mut x2, mut f2)] = [b, a];
     if f1 == 0.0 || f2 == 0.0 {
         return if f1 == 0.0 { x1 } else { x2 };
@@ -27,8 +27,8 @@ pub fn bracketed(mut function: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f
         (x1, f1) = (x, f);
 
         let (best, least) = if f2.abs() < f1.abs() { (x2, f2) } else { (x1, f1) };
-        let resolution = 2.0 * f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
-        let limit = resolution / (x2 - x1).abs();
+        let finest = 2.0 * f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
+        let limit = finest.max(0.5 * resolution) / (x2 - x1).abs();
         if limit > 0.5 || least == 0.0 {
             return best;
         }
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn finds_the_zero_of_steep_flat_and_kinked_functions() {
         let check = |function: fn(f64) -> f64, a: f64, b: f64, zero: f64| {
-            let found = bracketed(function, (a, function(a)), (b, function(b)));
+            let found = bracketed(function, (a, function(a)), (b, function(b)), 0.0);
             assert!((found - zero).abs() <= 4.0 * f64::EPSILON * zero.abs().max(1.0), "{found} is not {zero}");
         };
         check(|x| x * x - 2.0, 0.0, 2.0, 2.0_f64.sqrt());

@@ -31,7 +31,14 @@ pub trait Scalar:
     type Mask: Copy;
 
     /// The number without its derivatives.
-    fn value(self) -> f64;
+    type Value: Scalar<Value = Self::Value, Mask = Self::Mask>;
+
+    /// The number without its derivatives.
+    fn value(self) -> Self::Value;
+
+    /// The number times one without derivatives.
+    #[must_use]
+    fn scaled(self, factor: Self::Value) -> Self;
 
     /// Whether the value is less than `other`.
     fn less_than(self, other: f64) -> Self::Mask;
@@ -64,10 +71,16 @@ where
     D: DualNum<Primitive = f64> + DualStruct<Real = f64> + nalgebra::Scalar + Copy,
 {
     type Mask = bool;
+    type Value = f64;
 
     #[inline(always)]
     fn value(self) -> f64 {
         self.re()
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
     }
 
     #[inline(always)]
@@ -106,16 +119,19 @@ where
     }
 }
 
+/// A number that can be added to and multiplied by a parameter: `f64`, or a number of its own kind.
+pub trait Over<P>: Scalar + Add<P, Output = Self> + Mul<P, Output = Self> {}
+
+impl<P, S: Scalar + Add<P, Output = S> + Mul<P, Output = S>> Over<P> for S {}
+
 /// The length of a vector.
 #[inline(always)]
 pub fn length<S: Scalar>(vector: &Vector3<S>) -> S {
     vector.dot(vector).sqrt()
 }
 
-/// The vector divided by its `length`; the zero vector stays zero.
+/// One over a length; 1 over none, so that the direction of the zero vector is the zero vector.
 #[inline(always)]
-pub fn direction<S: Scalar>(vector: &Vector3<S>, length: S) -> Vector3<S> {
-    let divisor = S::select(length.less_than(f64::MIN_POSITIVE), S::one(), length);
-    let reciprocal = divisor.recip();
-    vector.map(|component| component * reciprocal)
+pub fn reciprocal_or_one<S: Scalar>(length: S) -> S {
+    S::select(length.less_than(f64::MIN_POSITIVE), S::one(), length).recip()
 }

@@ -7,7 +7,7 @@ use num_dual::Dual2_64;
 
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::PlanetFixed;
-use crate::motion::Forces;
+use crate::motion::{Forces, Parameters};
 use crate::planet::Planet;
 use crate::vehicle::{Aerodynamics, Vehicle};
 
@@ -156,7 +156,7 @@ pub struct Case {
     pub atmosphere: Atmosphere,
     /// What flies.
     pub vehicle: Vehicle,
-    /// σ, rad; see [`Forces::sin_cos_bank`].
+    /// σ, rad; see [`Parameters::bank_angle`].
     pub bank_angle: f64,
     /// The state at t = 0.
     pub initial_state: PlanetFixed<f64>,
@@ -294,8 +294,19 @@ impl Scenario {
 impl Case {
     /// What acts on the vehicle.
     pub fn forces(&self) -> Forces {
-        let Self { planet, atmosphere, vehicle, bank_angle, .. } = *self;
-        Forces { planet, atmosphere, vehicle, sin_cos_bank: bank_angle.sin_cos() }
+        Forces::new(self.planet, self.atmosphere, self.vehicle.aerodynamics, self.parameters())
+    }
+
+    /// The numbers of the case that may vary, beside its state.
+    pub fn parameters(&self) -> Parameters<f64> {
+        Parameters {
+            mass: self.vehicle.mass,
+            reference_area: self.vehicle.reference_area,
+            more_lift: 0.0,
+            more_drag: 0.0,
+            density_factor: 1.0,
+            bank_angle: self.bank_angle,
+        }
     }
 
     /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.

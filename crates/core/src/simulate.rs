@@ -1,14 +1,18 @@
 //! The flight: from a scenario to a trajectory.
 
-mod watch;
+mod descent;
+mod extremes;
+mod passage;
 
 use std::sync::atomic::AtomicBool;
 
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical};
 use crate::scenario::{Equations, Plain, Scenario};
-use crate::trajectory::{Termination, Trajectory};
-use watch::Watch;
+use crate::trajectory::{Arrival, Termination, Trajectory};
+use descent::Descent;
+use extremes::Extremes;
+use passage::Passage;
 
 /// Why a flight could not be finished.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -66,75 +70,80 @@ fn place(singularity: Singularity) -> &'static str {
 pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajectory, SimulationError> {
     let forces = scenario.case().forces();
     match scenario.case().solver.equations {
-        Equations::Cartesian => fly(scenario, &Cartesian(forces), interrupt),
-        Equations::Spherical => fly(scenario, &Spherical(forces), interrupt),
+        Equations::Cartesian => record(scenario, &Cartesian(forces), interrupt),
+        Equations::Spherical => record(scenario, &Spherical(forces), interrupt),
     }
 }
 
-fn fly<F: Formulation>(scenario: &Scenario, motion: &F, interrupt: &AtomicBool) -> Result<Trajectory, SimulationError> {
+/// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and allocates no memory.
+///
+/// # Errors
+/// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
+pub fn arrival(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Arrival, SimulationError> {
+    let forces = scenario.case().forces();
+    match scenario.case().solver.equations {
+        Equations::Cartesian => fly(scenario, &Cartesian(forces), interrupt, |_| Ok(())),
+        Equations::Spherical => fly(scenario, &Spherical(forces), interrupt, |_| Ok(())),
+    }
+}
+
+fn record<F: Formulation>(
+    scenario: &Scenario,
+    motion: &F,
+    interrupt: &AtomicBool,
+) -> Result<Trajectory, SimulationError> {
+    let case = scenario.case();
+    let start = F::coordinates(&case.initial_state);
+    regular(motion, 0.0, &start)?;
+    let mut steps: Vec<Step<6>> = Vec::with_capacity(TYPICAL_STEPS);
+    let mut extremes = Extremes::new(motion, case.vehicle.has_lift(), &start)?;
+    let arrival = fly(scenario, motion, interrupt, |passage| {
+        extremes.observe(motion, passage)?;
+        steps.push(passage.step.clone());
+        Ok(())
+    })?;
+    Ok(Trajectory { case: *case, start, steps, arrival, peaks: extremes.peaks, warnings: extremes.warnings })
+}
+
+/// Flies to the end and shows every step on the way.
+fn fly<F: Formulation>(
+    scenario: &Scenario,
+    motion: &F,
+    interrupt: &AtomicBool,
+    mut observe: impl FnMut(&Passage<F>) -> Result<(), SimulationError>,
+) -> Result<Arrival, SimulationError> {
     let case = scenario.case();
     let limits =
         Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
-    let start = F::coordinates(&case.initial_state);
-    regular(motion, 0.0, &start)?;
-    let mut integrator = Integrator::new(motion, start, limits);
-    let mut watch = Watch::new(motion, case.stop.altitude, &start, integrator.derivative())?;
+    let (mut time, mut state) = (0.0, F::coordinates(&case.initial_state));
+    regular(motion, time, &state)?;
+    let mut integrator = Integrator::new(motion, state, limits);
+    let mut descent = Descent::new(motion, case.stop.altitude, &state, integrator.derivative());
     if scenario.rises_from_stop_altitude() {
-        watch.start_upward();
+        descent.start_upward();
     }
-
-    let mut steps: Vec<Step<f64, 6>> = Vec::new();
+    let mut looks = 0;
     let mut termination = scenario.ends_at_start().then_some(Termination::SurfaceImpact);
     while termination.is_none() {
-        let mut step = integrator.advance(case.stop.time).map_err(|error| {
-            let last = steps.last().map_or(&start, |step| &step.end);
-            failure(motion, error, last)
-        })?;
-        if let Some(part) = watch.impact(&step) {
-            step = land(&mut integrator, &watch, &step, step.time(part));
+        let mut step = integrator.advance(case.stop.time).map_err(|error| failure(motion, error, &state))?;
+        let mut passage = Passage::new(motion, &step);
+        if let Some(crossing) = descent.impact(&passage) {
+            looks += passage.evaluations();
+            step = descent.land(&mut integrator, &step, crossing);
+            passage = Passage::new(motion, &step);
             termination = Some(Termination::SurfaceImpact);
         } else if step.end_time >= case.stop.time {
             termination = Some(Termination::TimeLimit);
         }
-        regular(motion, step.end_time, &step.end)?;
-        watch.observe(&step)?;
-        steps.push(step);
+        (time, state) = (passage.step.end_time, passage.step.end);
+        regular(motion, time, &state)?;
+        observe(&passage)?;
+        looks += passage.evaluations();
     }
-    Ok(Trajectory {
-        case: *case,
-        start,
-        steps,
-        termination: termination.unwrap_or(Termination::TimeLimit),
-        peaks: watch.peaks,
-        warnings: watch.warnings,
-        statistics: integrator.statistics(),
-    })
-}
-
-/// Repeats the step so that it ends on the stop altitude, which the dense output crosses at `time`.
-///
-/// The repeated step is more accurate than the dense output: its own crossing is found by Newton's method.
-fn land<F: Formulation>(
-    integrator: &mut Integrator<'_, F, f64, 6>,
-    watch: &Watch<'_, F>,
-    step: &Step<f64, 6>,
-    mut time: f64,
-) -> Step<f64, 6> {
-    let mut landing = integrator.shorten(step, time);
-    for _ in 0..5 {
-        let late = watch.lateness(&landing);
-        if late.abs() <= 1e-6 * landing.length() {
-            // So near, the motion is a straight line to rounding.
-            landing.move_end(-late);
-            break;
-        }
-        if late.abs() > 0.5 * landing.length() || !late.is_finite() {
-            break;
-        }
-        time -= late;
-        landing = integrator.shorten(step, time);
-    }
-    landing
+    let mut statistics = integrator.statistics();
+    statistics.evaluations += looks;
+    let termination = termination.unwrap_or(Termination::TimeLimit);
+    Ok(Arrival { termination, time, state: F::planet_fixed(&state), statistics })
 }
 
 /// Refuses a state in which the equations break down.
@@ -162,3 +171,5 @@ fn failure<F: Formulation>(motion: &F, error: IntegrationError, last: &[f64; 6])
 const SINGULAR: f64 = 1e-8;
 /// An integration that fails this close to a singularity fails because of it.
 const NEARLY_SINGULAR: f64 = 1e-2;
+/// Steps for which room is made at once: more than most flights take.
+const TYPICAL_STEPS: usize = 64;

@@ -1,7 +1,7 @@
 //! The answer: how the flight ended, its extremes, and its state at any time.
 
 use crate::coordinates::{FlightPath, PlanetFixed, latitude_and_altitude};
-use crate::integrate::{Statistics, Step};
+use crate::integrate::{Interpolant, Statistics, Step};
 use crate::motion::{Cartesian, Formulation, Loads, Spherical};
 use crate::scenario::{Case, Equations};
 
@@ -12,6 +12,19 @@ pub enum Termination {
     SurfaceImpact,
     /// The stop time was reached.
     TimeLimit,
+}
+
+/// Where, when and why a flight ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Why.
+    pub termination: Termination,
+    /// When, s.
+    pub time: f64,
+    /// Place and motion then.
+    pub state: PlanetFixed<f64>,
+    /// What the integration cost.
+    pub statistics: Statistics,
 }
 
 /// The greatest value of a quantity over the flight, the earliest where it is reached more than once.
@@ -99,17 +112,16 @@ impl FlightPoint {
 pub struct Trajectory {
     pub(crate) case: Case,
     pub(crate) start: [f64; 6],
-    pub(crate) steps: Vec<Step<f64, 6>>,
-    pub(crate) termination: Termination,
+    pub(crate) steps: Vec<Step<6>>,
+    pub(crate) arrival: Arrival,
     pub(crate) peaks: Peaks,
     pub(crate) warnings: Vec<Warning>,
-    pub(crate) statistics: Statistics,
 }
 
 impl Trajectory {
     /// How the flight ended.
     pub fn termination(&self) -> Termination {
-        self.termination
+        self.arrival.termination
     }
 
     /// The greatest values over the flight.
@@ -124,12 +136,12 @@ impl Trajectory {
 
     /// What the integration cost.
     pub fn statistics(&self) -> Statistics {
-        self.statistics
+        self.arrival.statistics
     }
 
     /// When the flight ended, s.
     pub fn end_time(&self) -> f64 {
-        self.steps.last().map_or(0.0, |step| step.end_time)
+        self.arrival.time
     }
 
     /// The initial state.
@@ -145,7 +157,11 @@ impl Trajectory {
     /// The state at a time, s; before the start it is the initial one, after the end the final one.
     pub fn at(&self, time: f64) -> FlightPoint {
         let following = self.steps.partition_point(|step| step.end_time <= time);
-        self.point_within(following, time)
+        match self.steps.get(following) {
+            _ if time <= 0.0 => self.initial(),
+            Some(step) => self.point(time, &self.interpolant(step).state_at(time)),
+            None => self.last(),
+        }
     }
 
     /// The instants of a sampling, strictly increasing, s.
@@ -196,20 +212,29 @@ impl Trajectory {
     /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
         let mut following = 0;
+        let mut inside: Option<(usize, Interpolant<6>)> = None;
         let mut point = |time: f64| {
             while self.steps.get(following).is_some_and(|step| step.end_time <= time) {
                 following += 1;
             }
-            self.point_within(following, time)
+            match self.steps.get(following) {
+                _ if time <= 0.0 => self.initial(),
+                Some(step) => {
+                    let known = inside.take().filter(|(index, _)| *index == following);
+                    let (_, interpolant) = inside.insert(known.unwrap_or_else(|| (following, self.interpolant(step))));
+                    self.point(time, &interpolant.state_at(time))
+                }
+                None => self.last(),
+            }
         };
         times.iter().map(|time| point(*time)).collect()
     }
 
-    fn point_within(&self, following: usize, time: f64) -> FlightPoint {
-        match self.steps.get(following) {
-            _ if time <= 0.0 => self.initial(),
-            Some(step) => self.point(time, &step.state_at(time)),
-            None => self.last(),
+    fn interpolant(&self, step: &Step<6>) -> Interpolant<6> {
+        let forces = self.case.forces();
+        match self.case.solver.equations {
+            Equations::Cartesian => step.interpolant(&Cartesian(forces)),
+            Equations::Spherical => step.interpolant(&Spherical(forces)),
         }
     }
 

@@ -1,7 +1,5 @@
 //! The vehicle: its mass and its aerodynamics.
 
-use crate::scalar::Scalar;
-
 /// Lift and drag coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aerodynamics {
@@ -25,34 +23,27 @@ pub struct Vehicle {
     pub aerodynamics: Aerodynamics,
 }
 
-/// The aerodynamic accelerations at full lift, m/s².
+/// The coefficients of an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AerodynamicAcceleration<S> {
-    /// D/m, against the velocity.
-    pub drag: S,
-    /// L/m, across the velocity.
-    pub lift: S,
+pub struct Coefficients {
+    /// `C_L`.
+    pub lift: f64,
+    /// `C_D`.
+    pub drag: f64,
+}
+
+impl Aerodynamics {
+    /// Lift and drag coefficient.
+    #[inline(always)]
+    pub fn coefficients(&self) -> Coefficients {
+        let Self::Constant { lift_coefficient, drag_coefficient } = *self;
+        Coefficients { lift: lift_coefficient, drag: drag_coefficient }
+    }
 }
 
 impl Vehicle {
-    /// Lift and drag per mass under a dynamic pressure, Pa.
-    ///
-    /// ```text
-    /// D = ½ ρ V² S C_D,   L = ½ ρ V² S C_L
-    /// ```
-    ///
-    /// # Reference
-    /// Jameson 2006, equations 36 and 37.
-    #[inline(always)]
-    pub fn aerodynamic_acceleration<S: Scalar>(&self, dynamic_pressure: S) -> AerodynamicAcceleration<S> {
-        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = self.aerodynamics;
-        let acceleration = dynamic_pressure * (self.reference_area / self.mass);
-        AerodynamicAcceleration { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient }
-    }
-
     /// Whether the vehicle has any lift.
     pub fn has_lift(&self) -> bool {
-        let Aerodynamics::Constant { lift_coefficient, .. } = self.aerodynamics;
-        lift_coefficient != 0.0 && self.reference_area > 0.0
+        self.aerodynamics.coefficients().lift != 0.0 && self.reference_area > 0.0
     }
 }

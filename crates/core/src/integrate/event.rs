@@ -38,7 +38,7 @@ pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Op
 type Sample = (f64, Dual64);
 
 fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
-    let crossing = |a: Sample, b: Sample| root::bracketed(|part| inside(part).re, (a.0, a.1.re), (b.0, b.1.re));
+    let crossing = |a: Sample, b: Sample| root::bracketed(|part| inside(part).re, (a.0, a.1.re), (b.0, b.1.re), 0.0);
     if a.1.eps > 0.0 && b.1.eps < 0.0 {
         let part = turning_point(a, b, inside);
         let top = (part, inside(part));
@@ -63,8 +63,11 @@ fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual
 
 /// Where the rate changes sign.
 fn turning_point(a: Sample, b: Sample, inside: &impl Fn(f64) -> Dual64) -> f64 {
-    root::bracketed(|part| inside(part).eps, (a.0, a.1.eps), (b.0, b.1.eps))
+    root::bracketed(|part| inside(part).eps, (a.0, a.1.eps), (b.0, b.1.eps), TURNING_POINT_RESOLUTION)
 }
+
+/// Parts of a step to which a turning point is located; the value there is off by the square of it.
+const TURNING_POINT_RESOLUTION: f64 = 1e-9;
 
 /// The value at which the tangents of the two ends meet: a quantity that falls, then rises, stays above it.
 fn tangents_meet(a: Sample, b: Sample, length: f64) -> f64 {

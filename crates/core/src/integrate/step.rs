@@ -6,66 +6,44 @@ use crate::scalar::Scalar;
 
 /// Evaluations of the derivative for a trial step.
 pub(super) const TRIAL_EVALUATIONS: usize = tableau::STAGES.len();
-/// Evaluations that complete an accepted step: the derivative at its end and the stages of the dense output.
-pub(super) const COMPLETION_EVALUATIONS: usize = 1 + tableau::DENSE_STAGES.len();
-const ALL_STAGES: usize = 1 + TRIAL_EVALUATIONS + COMPLETION_EVALUATIONS;
+/// Stages of a trial step, the derivative at its start included.
+const STAGES: usize = 1 + TRIAL_EVALUATIONS;
+/// The slopes from which the dense output is made: those of a trial step, that at its end, and its own.
+const ALL_STAGES: usize = STAGES + 1 + tableau::DENSE_STAGES.len();
+/// The first of the stages, after that at the start, on which the dense output rests.
+const FIRST_KEPT: usize = 5;
+const KEPT: usize = STAGES - FIRST_KEPT;
 
-/// An accepted step, with the state at every instant inside it.
+/// An accepted step.
 #[derive(Clone, Debug)]
-pub struct Step<S, const N: usize> {
+pub struct Step<const N: usize> {
     /// The instant at which the step starts, s.
     pub start_time: f64,
     /// The instant at which the step ends, s.
     pub end_time: f64,
     /// The state at the start.
-    pub start: [S; N],
+    pub start: [f64; N],
     /// The state at the end.
-    pub end: [S; N],
+    pub end: [f64; N],
     /// The rate of change at the start.
-    pub start_derivative: [S; N],
+    pub start_derivative: [f64; N],
     /// The rate of change at the end.
-    pub end_derivative: [S; N],
-    dense: [[S; N]; 7],
+    pub end_derivative: [f64; N],
+    slopes: [[f64; N]; KEPT],
 }
 
-impl<S: Scalar, const N: usize> Step<S, N> {
-    /// The length, s.
-    pub fn length(&self) -> f64 {
-        self.end_time - self.start_time
-    }
-
-    /// The instant at the given part of the step, 0 at its start and 1 at its end.
-    pub fn time(&self, part: f64) -> f64 {
-        if part < 1.0 { self.start_time + part * self.length() } else { self.end_time }
-    }
-
-    /// The state at the given part of the step, to order 7.
-    pub fn state(&self, part: f64) -> [S; N] {
-        // y = y₀ + θ (F₁ + (1-θ) (F₂ + θ (F₃ + (1-θ) (F₄ + θ (F₅ + (1-θ) (F₆ + θ F₇))))))
-        let rest = 1.0 - part;
-        let [f1, f2, f3, f4, f5, f6, f7] = &self.dense;
-        std::array::from_fn(|i| {
-            let inner = (f7[i] * part + f6[i]) * rest + f5[i];
-            let middle = (inner * part + f4[i]) * rest + f3[i];
-            ((middle * part + f2[i]) * rest + f1[i]) * part + self.start[i]
-        })
-    }
-
-    /// Moves the end by a time that is tiny beside the step, along the rate of change there.
-    pub fn move_end(&mut self, time: f64) {
-        self.end_time += time;
-        self.end = std::array::from_fn(|i| self.end[i] + self.end_derivative[i] * time);
-    }
-
-    /// The state at an instant of the step.
-    pub fn state_at(&self, time: f64) -> [S; N] {
-        self.state((time - self.start_time) / self.length())
-    }
+/// The state at every instant inside a step, to order 7.
+#[derive(Clone, Debug)]
+pub struct Interpolant<const N: usize> {
+    start_time: f64,
+    length: f64,
+    start: [f64; N],
+    coefficients: [[f64; N]; 7],
 }
 
 /// A trial step: the slopes of its stages and the state to which they lead.
 pub(super) struct Trial<S, const N: usize> {
-    slopes: [[S; N]; ALL_STAGES],
+    slopes: [[S; N]; STAGES],
     /// The state at the end, to order 8.
     pub(super) end: [S; N],
     /// The error of the mean slope by the embedded method of order 5.
@@ -75,17 +53,23 @@ pub(super) struct Trial<S, const N: usize> {
 }
 
 /// Tries a step of the given length; twelve stages less the first, which is the derivative at the start.
-pub(super) fn attempt<F: System<N>, S: Scalar, const N: usize>(
+#[inline]
+pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
     system: &F,
     start: &[S; N],
     derivative: &[S; N],
-    length: f64,
+    length: S::Value,
 ) -> Trial<S, N> {
-    let mut slopes = [[S::zero(); N]; ALL_STAGES];
+    let mut slopes = [[S::zero(); N]; STAGES];
     slopes[0] = *derivative;
-    for (stage, row) in (1..).zip(tableau::STAGES) {
-        slopes[stage] = system.derivative(&advanced(start, &sum(&slopes, row), length));
+    // Not a loop: with its rows known, the compiler saves a tenth of the time.
+    macro_rules! stages {
+        ($($stage:literal)*) => {$(
+            let slope = sum(&slopes, const { tableau::STAGES[$stage - 1] });
+            slopes[$stage] = system.derivative(&advanced(start, &slope, length));
+        )*};
     }
+    stages!(1 2 3 4 5 6 7 8 9 10 11);
     let mean = sum(&slopes, tableau::WEIGHTS);
     let third = sum(&slopes, tableau::THIRD);
     Trial {
@@ -96,45 +80,99 @@ pub(super) fn attempt<F: System<N>, S: Scalar, const N: usize>(
     }
 }
 
-/// Completes an accepted step with its dense output.
-pub(super) fn complete<F: System<N>, S: Scalar, const N: usize>(
+impl<const N: usize> Trial<f64, N> {
+    /// The step, once its end is accepted and the rate of change there is known.
+    pub(super) fn into_step(self, start_time: f64, end_time: f64, start: &[f64; N], end_derivative: [f64; N]) -> Step<N> {
+        Step {
+            start_time,
+            end_time,
+            start: *start,
+            end: self.end,
+            start_derivative: self.slopes[0],
+            end_derivative,
+            slopes: std::array::from_fn(|i| self.slopes[FIRST_KEPT + i]),
+        }
+    }
+}
+
+impl<const N: usize> Step<N> {
+    /// The length, s.
+    pub fn length(&self) -> f64 {
+        self.end_time - self.start_time
+    }
+
+    /// The instant at the given part of the step, 0 at its start and 1 at its end.
+    pub fn time(&self, part: f64) -> f64 {
+        if part < 1.0 { self.start_time + part * self.length() } else { self.end_time }
+    }
+
+    /// Moves the end by a time that is tiny beside the step, along the rate of change there.
+    pub fn move_end(&mut self, time: f64) {
+        self.end_time += time;
+        self.end = std::array::from_fn(|i| self.end[i] + self.end_derivative[i] * time);
+    }
+
+    /// The state inside, which takes [`Interpolant::EVALUATIONS`] of the derivative.
+    pub fn interpolant<F: System<f64, N>>(&self, system: &F) -> Interpolant<N> {
+        let Self { start, end, start_derivative, end_derivative, .. } = *self;
+        let length = self.length();
+        let mut slopes = [[0.0; N]; ALL_STAGES];
+        slopes[0] = start_derivative;
+        slopes[FIRST_KEPT..STAGES].copy_from_slice(&self.slopes);
+        slopes[STAGES] = end_derivative;
+        for (stage, row) in (STAGES + 1..).zip(tableau::DENSE_STAGES) {
+            slopes[stage] = system.derivative(&advanced(&start, &sum(&slopes, row), length));
+        }
+        let increment: [f64; N] = std::array::from_fn(|i| end[i] - start[i]);
+        let bend = std::array::from_fn(|i| start_derivative[i] * length - increment[i]);
+        let twist = std::array::from_fn(|i| increment[i] * 2.0 - (start_derivative[i] + end_derivative[i]) * length);
+        let [f4, f5, f6, f7] = tableau::DENSE.map(|row| sum(&slopes, row).map(|component| component * length));
+        let coefficients = [increment, bend, twist, f4, f5, f6, f7];
+        Interpolant { start_time: self.start_time, length, start, coefficients }
+    }
+}
+
+impl<const N: usize> Interpolant<N> {
+    /// What it costs to make one: evaluations of the derivative.
+    pub const EVALUATIONS: usize = tableau::DENSE_STAGES.len();
+
+    /// The state at the given part of the step, 0 at its start and 1 at its end.
+    pub fn state(&self, part: f64) -> [f64; N] {
+        // y = y₀ + θ (F₁ + (1-θ) (F₂ + θ (F₃ + (1-θ) (F₄ + θ (F₅ + (1-θ) (F₆ + θ F₇))))))
+        let rest = 1.0 - part;
+        let [f1, f2, f3, f4, f5, f6, f7] = &self.coefficients;
+        std::array::from_fn(|i| {
+            let inner = (f7[i] * part + f6[i]) * rest + f5[i];
+            let middle = (inner * part + f4[i]) * rest + f3[i];
+            ((middle * part + f2[i]) * rest + f1[i]) * part + self.start[i]
+        })
+    }
+
+    /// The state at an instant of the step.
+    pub fn state_at(&self, time: f64) -> [f64; N] {
+        self.state((time - self.start_time) / self.length)
+    }
+}
+
+/// The state at the end of steps that were taken before, from another start: the numbers may carry derivatives, which then are those
+/// of the end by what varies at the start and in the system. The steps are not chosen anew, so that their choice adds nothing.
+pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
-    start_time: f64,
-    end_time: f64,
-    start: &[S; N],
-    trial: &Trial<S, N>,
-) -> Step<S, N> {
-    let Trial { mut slopes, end, .. } = *trial;
-    let length = end_time - start_time;
-    slopes[12] = system.derivative(&end);
-    for (stage, row) in (13..).zip(tableau::DENSE_STAGES) {
-        slopes[stage] = system.derivative(&advanced(start, &sum(&slopes, row), length));
-    }
-    let [first, last] = [slopes[0], slopes[12]];
-    let increment: [S; N] = std::array::from_fn(|i| end[i] - start[i]);
-    let bend = std::array::from_fn(|i| first[i] * length - increment[i]);
-    let twist = std::array::from_fn(|i| increment[i] * 2.0 - (first[i] + last[i]) * length);
-    let [f4, f5, f6, f7] = tableau::DENSE.map(|row| sum(&slopes, row).map(|component| component * length));
-    Step {
-        start_time,
-        end_time,
-        start: *start,
-        end,
-        start_derivative: first,
-        end_derivative: last,
-        dense: [increment, bend, twist, f4, f5, f6, f7],
-    }
+    start: [S; N],
+    steps: &[Step<N>],
+) -> [S; N] {
+    steps.iter().fold(start, |state, step| attempt(system, &state, &system.derivative(&state), step.length()).end)
 }
 
 /// The state after moving with a slope for a time.
 #[inline(always)]
-fn advanced<S: Scalar, const N: usize>(start: &[S; N], slope: &[S; N], time: f64) -> [S; N] {
-    std::array::from_fn(|i| start[i] + slope[i] * time)
+fn advanced<S: Scalar, const N: usize>(start: &[S; N], slope: &[S; N], time: S::Value) -> [S; N] {
+    std::array::from_fn(|i| start[i] + slope[i].scaled(time))
 }
 
 /// The weighted sum of slopes.
 #[inline(always)]
-fn sum<S: Scalar, const N: usize>(slopes: &[[S; N]; ALL_STAGES], row: Row) -> [S; N] {
+fn sum<S: Scalar, const N: usize>(slopes: &[[S; N]], row: Row) -> [S; N] {
     let mut sum = [S::zero(); N];
     for (slope, weight) in row {
         for (component, slope) in sum.iter_mut().zip(&slopes[*slope]) {

@@ -2,21 +2,23 @@
 
 use super::{Forces, Formulation, Singularity};
 use crate::coordinates::PlanetFixed;
-use crate::integrate::System;
-use crate::scalar::Scalar;
+use crate::integrate::{Pace, System};
+use crate::scalar::{Over, Scalar};
 
 /// The state (x, y, z, vx, vy, vz), in m and m/s.
 #[derive(Clone, Copy, Debug)]
-pub struct Cartesian(pub Forces);
+pub struct Cartesian<P = f64>(pub Forces<P>);
 
-impl System<6> for Cartesian {
+impl<P: Scalar, S: Over<P>> System<S, 6> for Cartesian<P> {
     #[inline(always)]
-    fn derivative<S: Scalar>(&self, coordinates: &[S; 6]) -> [S; 6] {
+    fn derivative(&self, coordinates: &[S; 6]) -> [S; 6] {
         let state = PlanetFixed::from(*coordinates);
         let acceleration = self.0.acceleration(&state);
         PlanetFixed { position: state.velocity, velocity: acceleration }.into()
     }
+}
 
+impl Pace<6> for Cartesian {
     fn magnitudes(&self) -> [f64; 6] {
         let [length, speed] = self.0.units();
         [length, length, length, speed, speed, speed]
@@ -28,7 +30,7 @@ impl System<6> for Cartesian {
 }
 
 impl Formulation for Cartesian {
-    fn coordinates(state: &PlanetFixed<f64>) -> [f64; 6] {
+    fn coordinates<S: Scalar>(state: &PlanetFixed<S>) -> [S; 6] {
         (*state).into()
     }
 

@@ -1,19 +1,19 @@
 //! The spherical formulation of the thesis. It is singular at the poles, in vertical flight and at rest.
 
-use super::{Forces, Formulation, Singularity, dynamic_pressure, lift_fade_over_cosine};
+use super::{Forces, Formulation, Singularity, lift_fade_over_cosine};
 use crate::coordinates::{FlightPath, PlanetFixed};
-use crate::integrate::System;
-use crate::scalar::Scalar;
+use crate::integrate::{Pace, System};
+use crate::scalar::{Over, Scalar};
 
 /// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
 #[derive(Clone, Copy, Debug)]
-pub struct Spherical(pub Forces);
+pub struct Spherical<P = f64>(pub Forces<P>);
 
-impl System<6> for Spherical {
+impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text.
     #[inline(always)]
-    fn derivative<S: Scalar>(&self, coordinates: &[S; 6]) -> [S; 6] {
-        let Forces { planet, atmosphere, vehicle, sin_cos_bank: (sin_sigma, cos_sigma) } = self.0;
+    fn derivative(&self, coordinates: &[S; 6]) -> [S; 6] {
+        let Forces { planet, sin_cos_bank: (sin_sigma, cos_sigma), .. } = self.0;
         let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
             FlightPath::from(*coordinates);
         let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();
@@ -21,9 +21,10 @@ impl System<6> for Spherical {
         let (sin_psi, cos_psi) = heading.sin_cos();
         let omega = planet.rotation_rate;
 
-        let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
-        let air = vehicle.aerodynamic_acceleration(dynamic_pressure(atmosphere.density(altitude), v));
-        let lift_over_cos_gamma = air.lift * lift_fade_over_cosine(cos_gamma * cos_gamma);
+        let density = self.0.density(r - planet.shape.surface_radius(sin_phi, cos_phi));
+        let air = self.0.air(v);
+        let drag = air.drag * density;
+        let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
         let g = planet.gravity(r);
         // rω² cos φ
         let centrifugal = r * cos_phi * (omega * omega);
@@ -35,7 +36,7 @@ impl System<6> for Spherical {
         // φ̇ = V cos γ sin ψ / r   (11)
         let latitude_rate = v * cos_gamma * sin_psi * r.recip();
         // V̇ = -D/m - g sin γ + rω² cos φ (cos φ sin γ - sin φ sin ψ cos γ)   (29)
-        let v_rate = -air.drag - g * sin_gamma + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
+        let v_rate = -drag - g * sin_gamma + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
         // Vγ̇ = (L/m) cos σ - g cos γ + (V²/r) cos γ + 2Vω cos φ cos ψ + rω² cos φ (cos φ cos γ + sin φ sin ψ sin γ)   (30)
         let gamma_rate = (lift_over_cos_gamma * cos_gamma * cos_sigma - g * cos_gamma
             + v * v * r.recip() * cos_gamma
@@ -50,7 +51,9 @@ impl System<6> for Spherical {
             * v.recip();
         [r_rate, longitude_rate, latitude_rate, v_rate, gamma_rate, psi_rate]
     }
+}
 
+impl Pace<6> for Spherical {
     fn magnitudes(&self) -> [f64; 6] {
         let [length, speed] = self.0.units();
         [length, 1.0, 1.0, speed, 1.0, 1.0]
@@ -62,7 +65,7 @@ impl System<6> for Spherical {
 }
 
 impl Formulation for Spherical {
-    fn coordinates(state: &PlanetFixed<f64>) -> [f64; 6] {
+    fn coordinates<S: Scalar>(state: &PlanetFixed<S>) -> [S; 6] {
         FlightPath::from_planet_fixed(state).into()
     }
 
