@@ -54,7 +54,8 @@ impl OdeSystem<f64, SVector<f64, 6>> for Motion {
 
 fn ode_solvers(case: &Case, end: f64, tolerance: f64) -> [f64; 6] {
     let state: [f64; 6] = case.initial_state.into();
-    let mut solver = Dop853::new(Motion(Cartesian(case.forces())), 0.0, end, end, SVector::from(state), tolerance, 1e-3);
+    let mut solver =
+        Dop853::new(Motion(Cartesian(case.forces())), 0.0, end, end, SVector::from(state), tolerance, 1e-3);
     solver.integrate().unwrap();
     (*solver.y_out().last().unwrap()).into()
 }

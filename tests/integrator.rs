@@ -68,7 +68,8 @@ fn the_error_of_the_dense_output_falls_with_the_eighth_power_of_the_step() {
     let worst = |length: f64| {
         let step = single_step(length);
         let inside = step.interpolant(&Kepler);
-        let errors = (1..20).map(|part| f64::from(part) / 20.0).map(|part| distance(&inside.state(part), part * length));
+        let errors =
+            (1..20).map(|part| f64::from(part) / 20.0).map(|part| distance(&inside.state(part), part * length));
         errors.fold(0.0, f64::max)
     };
     let order = (worst(0.2) / worst(0.1)).log2();

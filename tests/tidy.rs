@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
-const CORE: [&[&str]; 8] = [
+const CORE: [&[&str]; 9] = [
     &["scalar", "root"],
     &["integrate"],
     &["planet", "atmosphere", "vehicle"],
@@ -12,7 +12,8 @@ const CORE: [&[&str]; 8] = [
     &["motion"],
     &["scenario"],
     &["trajectory"],
-    &["simulate"],
+    &["sensitivity", "simulate"],
+    &["verification"],
 ];
 
 /// The levels of the service.

@@ -12,7 +12,6 @@ pub use step::{Interpolant, Step, follow};
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-
 /// A system of `N` ordinary differential equations that do not depend on time.
 pub trait System<S, const N: usize> {
     /// The rate of change of each component of the state.

@@ -52,8 +52,10 @@
 //! Institute of Technology, March 2006: "Jameson 2006" in these pages, and its errata in the README.
 
 pub mod scenario;
+pub mod sensitivity;
 pub mod simulate;
 pub mod trajectory;
+pub mod verification;
 
 pub mod motion;
 

@@ -213,6 +213,11 @@ impl Forces {
         if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
+    /// D/m, m/s².
+    pub fn drag(&self, state: &PlanetFixed<f64>) -> f64 {
+        self.air(length(&state.velocity)).drag * self.density(self.planet.shape.altitude(&state.position))
+    }
+
     /// The loads in a state.
     pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, state: &PlanetFixed<S>) -> Loads<S> {
         let position = &state.position;
@@ -225,7 +230,8 @@ impl Forces {
         } else {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
             let outward = position.x * ahead.x + position.y * ahead.y;
-            self.air(speed).drag * density + self.planet.gravity(radius) * up.dot(&ahead) - outward * self.planet.rotation_rate.powi(2)
+            self.air(speed).drag * density + self.planet.gravity(radius) * up.dot(&ahead)
+                - outward * self.planet.rotation_rate.powi(2)
         };
         let (lift_coefficient, drag_coefficient) = self.coefficients();
         let lift_coefficient = lift_fade_over_cosine(cos_gamma) * cos_gamma * lift_coefficient;

@@ -280,6 +280,12 @@ impl Scenario {
         &self.case
     }
 
+    /// The same flight at another tolerance, which must be within its bound.
+    pub(crate) fn with_tolerance(&self, relative_tolerance: f64) -> Self {
+        let solver = Solver { relative_tolerance, ..self.case.solver };
+        Self { case: Case { solver, ..self.case }, ..*self }
+    }
+
     /// Whether the flight starts on the stop altitude and leaves it upward.
     pub fn rises_from_stop_altitude(&self) -> bool {
         self.on_stop_altitude == Some(Departure::Rising)

@@ -230,7 +230,7 @@ impl Trajectory {
         times.iter().map(|time| point(*time)).collect()
     }
 
-    fn interpolant(&self, step: &Step<6>) -> Interpolant<6> {
+    pub(crate) fn interpolant(&self, step: &Step<6>) -> Interpolant<6> {
         let forces = self.case.forces();
         match self.case.solver.equations {
             Equations::Cartesian => step.interpolant(&Cartesian(forces)),
@@ -238,11 +238,16 @@ impl Trajectory {
         }
     }
 
-    fn point(&self, time: f64, coordinates: &[f64; 6]) -> FlightPoint {
-        let state: PlanetFixed<f64> = match self.case.solver.equations {
+    /// The state of six numbers of the flight's formulation.
+    pub(crate) fn planet_fixed(&self, coordinates: &[f64; 6]) -> PlanetFixed<f64> {
+        match self.case.solver.equations {
             Equations::Cartesian => Cartesian::planet_fixed(coordinates),
             Equations::Spherical => Spherical::planet_fixed(coordinates),
-        };
+        }
+    }
+
+    fn point(&self, time: f64, coordinates: &[f64; 6]) -> FlightPoint {
+        let state = self.planet_fixed(coordinates);
         let flight_path = FlightPath::from_planet_fixed(&state).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &self.case.planet.shape);
         let loads = self.case.forces().loads(&state);

@@ -3,15 +3,19 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use reentry::sensitivity::sensitivities;
 use reentry::simulate::{SimulationError, simulate as fly};
 use reentry::trajectory::{FlightPoint, Trajectory};
+use reentry::verification::verify;
 use serde_json::Value;
 
 use crate::error::ApiError;
 use crate::format::Format;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
-use crate::wire::trajectory::SimulateResponse;
+use crate::wire::sensitivities::Sensitivities;
+use crate::wire::trajectory::{Extras, SimulateResponse};
+use crate::wire::verification::Verification;
 
 /// Flies a case; `interrupt` ends the flight early.
 ///
@@ -24,11 +28,21 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let flight = fly(&job.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();
     let points = rows(&job, &flight, row_limit)?;
-    let response = SimulateResponse::new(job, &flight, points, elapsed);
+    let extras = if format == Format::Json { extras(&job, &flight, interrupt)? } else { Extras::default() };
+    let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
     Ok(match (format, &response.trajectory) {
         (Format::Csv, Some(trajectory)) => trajectory.to_csv()?,
         _ => serde_json::to_vec(&response)?,
     })
+}
+
+/// What a job asks for beyond the flight.
+fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
+    let request = &job.request;
+    let sensitivities =
+        request.sensitivities.then(|| Sensitivities::from_core(&sensitivities(flight), request.angle_unit));
+    let verification = request.verify.then(|| verify(&job.scenario, flight, interrupt)).transpose()?;
+    Ok(Extras { sensitivities, verification: verification.map(Verification::from) })
 }
 
 /// The rows for which a job asks.

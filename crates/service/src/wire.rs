@@ -14,7 +14,9 @@ pub mod vehicle;
 
 pub mod convert;
 pub mod scenario;
+pub mod sensitivities;
 pub mod trajectory;
+pub mod verification;
 
 use serde::Serialize;
 use utoipa::ToSchema;

@@ -82,7 +82,13 @@ pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
 
 impl<const N: usize> Trial<f64, N> {
     /// The step, once its end is accepted and the rate of change there is known.
-    pub(super) fn into_step(self, start_time: f64, end_time: f64, start: &[f64; N], end_derivative: [f64; N]) -> Step<N> {
+    pub(super) fn into_step(
+        self,
+        start_time: f64,
+        end_time: f64,
+        start: &[f64; N],
+        end_derivative: [f64; N],
+    ) -> Step<N> {
         Step {
             start_time,
             end_time,
@@ -161,7 +167,18 @@ pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     start: [S; N],
     steps: &[Step<N>],
 ) -> [S; N] {
+    let system = &Once(system);
     steps.iter().fold(start, |state, step| attempt(system, &state, &system.derivative(&state), step.length()).end)
+}
+
+/// A system whose derivative stands in the program once, not in every stage: in wide numbers it is long.
+struct Once<'a, F>(&'a F);
+
+impl<F: System<S, N>, S: Scalar, const N: usize> System<S, N> for Once<'_, F> {
+    #[inline(never)]
+    fn derivative(&self, state: &[S; N]) -> [S; N] {
+        self.0.derivative(state)
+    }
 }
 
 /// The state after moving with a slope for a time.

@@ -27,6 +27,12 @@ pub struct SimulateRequest {
     /// Whether the answer repeats the request, with every default filled in, as `case`.
     #[schema(required = false, default = false)]
     pub echo: bool,
+    /// Whether the JSON answer has the derivatives of the flight's end by the numbers of the case; the computing of about six flights.
+    #[schema(required = false, default = false)]
+    pub sensitivities: bool,
+    /// Whether the JSON answer says how exact the flight is; the computing of about three flights.
+    #[schema(required = false, default = false)]
+    pub verify: bool,
     /// The instant t = 0: an RFC 3339 time. Where `sidereal_time` is absent, it follows from the Earth rotation angle.
     #[schema(required = false, value_type = String, format = DateTime)]
     pub epoch: Option<Instant>,
@@ -156,6 +162,8 @@ impl SimulateRequest {
         let name = object.optional_string("name");
         let angle_unit = object.angle_unit();
         let echo = object.boolean_or("echo", false);
+        let sensitivities = object.boolean_or("sensitivities", false);
+        let verify = object.boolean_or("verify", false);
         let epoch = read_epoch(object);
         let planet = object.object_or("planet", json!({}), Planet::read);
         let atmosphere = object.object_or("atmosphere", json!({"type": "exponential"}), Atmosphere::read);
@@ -175,6 +183,8 @@ impl SimulateRequest {
             name,
             angle_unit: angle_unit?,
             echo: echo?,
+            sensitivities: sensitivities?,
+            verify: verify?,
             epoch,
             planet: planet?,
             atmosphere: atmosphere?,

@@ -12,6 +12,8 @@ use utoipa::{PartialSchema, ToSchema};
 use super::AngleUnit;
 use super::planet::{PlanetModel, Shape};
 use super::scenario::{Formulation, Job};
+use super::sensitivities::Sensitivities;
+use super::verification::Verification;
 
 /// One quantity of the flight: a key of the states, a column of the trajectory.
 pub struct Column {
@@ -245,6 +247,15 @@ pub struct Warning {
     pub time: Option<f64>,
 }
 
+/// What a request may ask for beyond the flight.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras {
+    /// With `sensitivities`.
+    pub sensitivities: Option<Sensitivities>,
+    /// With `verify`.
+    pub verification: Option<Verification>,
+}
+
 /// A finished flight.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct SimulateResponse {
@@ -270,6 +281,14 @@ pub struct SimulateResponse {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub trajectory: Option<Columns>,
+    /// The derivatives of the flight's end, with `sensitivities`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub sensitivities: Option<Sensitivities>,
+    /// How exact the flight is, with `verify`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub verification: Option<Verification>,
     /// How the equations were integrated.
     pub solver: SolverReport,
     /// What the user should know.
@@ -282,7 +301,7 @@ pub struct SimulateResponse {
 
 impl SimulateResponse {
     /// The answer to a job that was flown in `elapsed` seconds; `points` are the rows that it asks for.
-    pub fn new(job: Job, flight: &Trajectory, points: Option<Vec<FlightPoint>>, elapsed: f64) -> Self {
+    pub fn new(job: Job, flight: &Trajectory, points: Option<Vec<FlightPoint>>, extras: Extras, elapsed: f64) -> Self {
         let Job { request, echo, .. } = job;
         let unit = request.angle_unit;
         let row = |point| Row { point, unit };
@@ -308,6 +327,8 @@ impl SimulateResponse {
             final_state: row(flight.last()),
             peaks: Peaks::from(flight.peaks()),
             trajectory: points.map(|points| Columns { points, unit }),
+            sensitivities: extras.sensitivities,
+            verification: extras.verification,
             solver: SolverReport {
                 formulation: request.solver.formulation,
                 relative_tolerance: request.solver.relative_tolerance,

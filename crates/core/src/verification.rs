@@ -1,0 +1,108 @@
+//! How exact a flight is: beside a finer one, and by its balance of energy.
+
+use std::sync::atomic::AtomicBool;
+
+use crate::coordinates::PlanetFixed;
+use crate::motion::Forces;
+use crate::scenario::{Bound, Case, Scenario};
+use crate::simulate::{SimulationError, arrival};
+use crate::trajectory::Trajectory;
+
+/// By how much a flight is off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verification {
+    /// The tolerance of the finer flight: a hundredth of the flight's, but no finer than there is.
+    pub relative_tolerance: f64,
+    /// The final time less that of the finer flight, s.
+    pub time_difference: f64,
+    /// Between the final positions of both, m.
+    pub distance: f64,
+    /// The greatest amount by which the balance of energy was off on the way, J/kg: the energy lost, which the drag should have taken.
+    pub energy_drift: f64,
+    /// The energy that drag has taken, J/kg.
+    pub drag_work: f64,
+}
+
+/// Flies the scenario once more at a hundredth of its tolerance, and adds up the energy along the flight.
+///
+/// # Errors
+/// When the finer flight cannot be finished, or is interrupted.
+pub fn verify(
+    scenario: &Scenario,
+    flight: &Trajectory,
+    interrupt: &AtomicBool,
+) -> Result<Verification, SimulationError> {
+    let relative_tolerance = (scenario.case().solver.relative_tolerance / 100.0).max(Bound::RELATIVE_TOLERANCE.minimum);
+    let finer = arrival(&scenario.with_tolerance(relative_tolerance), interrupt)?;
+    let (energy_drift, drag_work) = energy_balance(flight);
+    let end = flight.last();
+    Ok(Verification {
+        relative_tolerance,
+        time_difference: end.time - finer.time,
+        distance: (end.flight_path.to_planet_fixed().position - finer.state.position).norm(),
+        energy_drift,
+        drag_work,
+    })
+}
+
+/// The greatest error of the balance, and the work of the drag, J/kg.
+///
+/// ```text
+/// E = V²/2 - ω² (x² + y²)/2 - GM/r,   dE/dt = -(D/m) V
+/// ```
+///
+/// Lift and the Coriolis force are across the velocity; the energy is Jameson 2006, equation 29, integrated once.
+fn energy_balance(flight: &Trajectory) -> (f64, f64) {
+    let forces = flight.case.forces();
+    let start = energy(&flight.case, &flight.case.initial_state);
+    let (mut drift, mut work): (f64, f64) = (0.0, 0.0);
+    for step in &flight.steps {
+        let interpolant = flight.interpolant(step);
+        let power = |part: f64| drag_power(&forces, &flight.planet_fixed(&interpolant.state(part)));
+        let half = step.length() / 2.0;
+        for (abscissa, weight) in GAUSS {
+            work += half * weight * (power(0.5 - abscissa / 2.0) + power(0.5 + abscissa / 2.0));
+        }
+        let off = energy(&flight.case, &flight.planet_fixed(&step.end)) + work - start;
+        drift = drift.max(off.abs());
+    }
+    (drift, work)
+}
+
+fn energy(case: &Case, state: &PlanetFixed<f64>) -> f64 {
+    let PlanetFixed { position, velocity } = state;
+    let from_axis_squared = position.x * position.x + position.y * position.y;
+    velocity.norm_squared() / 2.0
+        - case.planet.rotation_rate.powi(2) * from_axis_squared / 2.0
+        - case.planet.gravitational_parameter / position.norm()
+}
+
+fn drag_power(forces: &Forces, state: &PlanetFixed<f64>) -> f64 {
+    forces.drag(state) * state.velocity.norm()
+}
+
+/// Abscissae, each for both signs, and weights of Gauss's quadrature with 12 points on [-1, 1]: exact to degree 23.
+/// Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, table 25.4.
+const GAUSS: [(f64, f64); 6] = [
+    (0.125_233_408_511_468_9, 0.249_147_045_813_402_8),
+    (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
+    (0.587_317_954_286_617_5, 0.203_167_426_723_065_9),
+    (0.769_902_674_194_304_7, 0.160_078_328_543_346_2),
+    (0.904_117_256_370_474_9, 0.106_939_325_995_318_4),
+    (0.981_560_634_246_719_2, 0.047_175_336_386_511_8),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::GAUSS;
+
+    #[test]
+    fn the_quadrature_is_exact_for_even_powers_to_22() {
+        for power in (0..=22).step_by(2) {
+            let sum: f64 = GAUSS.iter().map(|(abscissa, weight)| 2.0 * weight * abscissa.powi(power)).sum();
+            assert!((sum - 2.0 / f64::from(power + 1)).abs() < 1e-15, "x^{power}: {sum}");
+        }
+        let beyond: f64 = GAUSS.iter().map(|(abscissa, weight)| 2.0 * weight * abscissa.powi(24)).sum();
+        assert!((beyond - 2.0 / 25.0).abs() > 1e-15, "the test cannot tell");
+    }
+}

@@ -1,0 +1,28 @@
+//! How exact a flight is.
+
+use reentry::verification::Verification as CoreVerification;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// How exact the flight is: beside one at a hundredth of its tolerance, and by its balance of energy.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct Verification {
+    /// The tolerance of the finer flight: a hundredth of the flight's, but at least 1e-14.
+    pub relative_tolerance: f64,
+    /// The final time less that of the finer flight, s.
+    pub time_difference: f64,
+    /// Between the final positions of both in the planet-fixed frame, m.
+    pub distance: f64,
+    /// The greatest amount on the way by which V²/2 - ω²(x² + y²)/2 - GM/r and the work of the drag did not add up, J/kg.
+    /// The work is summed on the dense output, which is less exact than the steps.
+    pub energy_drift: f64,
+    /// The energy that the drag has taken, J/kg, to compare the drift with.
+    pub drag_work: f64,
+}
+
+impl From<CoreVerification> for Verification {
+    fn from(core: CoreVerification) -> Self {
+        let CoreVerification { relative_tolerance, time_difference, distance, energy_drift, drag_work } = core;
+        Self { relative_tolerance, time_difference, distance, energy_drift, drag_work }
+    }
+}
