@@ -7,6 +7,7 @@ mod conversions;
 mod flights;
 mod http;
 mod integrator;
+mod number_types;
 mod openapi;
 mod pitfalls;
 mod properties;

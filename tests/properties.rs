@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use reentry::coordinates::{FlightPath, PlanetFixed};
 use reentry::motion::STANDARD_GRAVITY;
 use reentry::planet::Shape;
@@ -12,7 +11,7 @@ use reentry::trajectory::Sampling;
 use reentry::{Aerodynamics, Case, Planet, Stop, Trajectory, Vehicle};
 
 use crate::check::{angle, near, relative};
-use crate::flights::{fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
+use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
 
 /// V²/2 - ω²r²cos²φ/2 - g₀r₀²/r: constant where nothing but gravity acts (Jameson 2006, equations 29 to 31 integrated once).
 fn jacobi_integral(case: &Case, state: &FlightPath<f64>) -> f64 {
@@ -23,11 +22,6 @@ fn jacobi_integral(case: &Case, state: &FlightPath<f64>) -> f64 {
 fn evenly(flight: &Trajectory, count: usize) -> Vec<FlightPath<f64>> {
     let times = flight.instants(&Sampling::Count(count), count).unwrap();
     flight.points(&times).into_iter().map(|point| point.flight_path).collect()
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    // The same flights in every run: the gate must not depend on chance.
-    ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() }
 }
 
 proptest! {

@@ -10,7 +10,10 @@ mod tableau;
 
 pub use step::{Interpolant, Step, follow};
 
+use std::array::from_fn;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::scalar::Lanes;
 
 /// A system of `N` ordinary differential equations that do not depend on time.
 pub trait System<S, const N: usize> {
@@ -89,7 +92,8 @@ impl<'a, F: Pace<N>, const N: usize> Integrator<'a, F, N> {
     /// Starts at t = 0 with the given state.
     pub fn new(system: &'a F, state: [f64; N], limits: Limits<'a>) -> Self {
         let derivative = system.derivative(&state);
-        let control = Control::new(system, &state, &derivative, limits);
+        let mut control = Control::new(system, &state, &derivative, limits);
+        control.shorten(system.longest_step(&state, &derivative));
         Self { system, control, state, derivative }
     }
 
@@ -108,34 +112,74 @@ impl<'a, F: Pace<N>, const N: usize> Integrator<'a, F, N> {
     /// # Errors
     /// When the limit of steps is reached, no step meets the tolerance, or the flag is raised.
     pub fn advance(&mut self, end: f64) -> Result<Step<N>, IntegrationError> {
-        let longest = self.system.longest_step(&self.state, &self.derivative);
-        self.control.length = self.control.length.min(longest);
         loop {
-            let start_time = self.control.time;
-            let end_time = self.control.trial_end(end)?;
-            let trial = step::attempt(self.system, &self.state, &self.derivative, end_time - start_time);
-            let error = self.control.error(&self.state, &trial);
-            if self.control.accepts(error, end_time) {
+            let trial_end = self.control.trial_end(end)?;
+            let trial = step::attempt(self.system, &self.state, &self.derivative, self.control.length);
+            if self.control.accepts(&self.state, &trial) {
                 let end_derivative = self.system.derivative(&trial.end);
-                return Ok(self.take(trial.into_step(start_time, end_time, &self.state, end_derivative)));
+                return Ok(self.take(trial, trial_end, end_derivative));
             }
         }
     }
 
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
     pub fn shorten(&mut self, step: &Step<N>, end: f64) -> Step<N> {
-        let trial = step::attempt(self.system, &step.start, &step.start_derivative, end - step.start_time);
+        (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
+        let trial = step::attempt(self.system, &self.state, &self.derivative, end - step.start_time);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
-        self.control.time = end;
         let end_derivative = self.system.derivative(&trial.end);
-        self.take(trial.into_step(step.start_time, end, &step.start, end_derivative))
+        self.take(trial, end, end_derivative)
     }
 
-    fn take(&mut self, step: Step<N>) -> Step<N> {
-        self.state = step.end;
-        self.derivative = step.end_derivative;
+    /// Goes to the end of a trial step.
+    fn take(&mut self, trial: step::Trial<f64, N>, end_time: f64, end_derivative: [f64; N]) -> Step<N> {
+        let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
+        (self.control.time, self.state, self.derivative) = (end_time, step.end, end_derivative);
+        self.control.shorten(self.system.longest_step(&self.state, &self.derivative));
         step
     }
+}
+
+/// Tries a step of each integrator, all computed at once by the `system` of their lanes, to the `ends` at the latest.
+///
+/// A lane whose trial meets its tolerance advances by it; the others will try a shorter one the next time. A lane without an
+/// integrator is idle. The steps are those that the integrators would take alone, to the last digit.
+///
+/// # Errors
+/// Lane by lane those of [`Integrator::advance`].
+pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: usize>(
+    system: &M,
+    integrators: [Option<&mut Integrator<'_, F, N>>; L],
+    ends: [f64; L],
+) -> [Option<Result<Step<N>, IntegrationError>>; L] {
+    let mut integrators = integrators;
+    let trial_ends: [_; L] =
+        from_fn(|lane| integrators[lane].as_mut().map(|integrator| integrator.control.trial_end(ends[lane])));
+    let state = from_fn(|i| abreast(&integrators, |integrator| integrator.state[i]));
+    let derivative = from_fn(|i| abreast(&integrators, |integrator| integrator.derivative[i]));
+    let length = abreast(&integrators, |integrator| integrator.control.length);
+    let trial = step::attempt(system, &state, &derivative, length);
+    let end_derivative = system.derivative(&trial.end);
+    let mut lane = 0..;
+    integrators.map(|integrator| {
+        let lane = lane.next()?;
+        let integrator = integrator?;
+        let trial_end = match trial_ends[lane]? {
+            Ok(trial_end) => trial_end,
+            Err(error) => return Some(Err(error)),
+        };
+        let trial = trial.lane(lane);
+        let accepted = integrator.control.accepts(&integrator.state, &trial);
+        accepted.then(|| Ok(integrator.take(trial, trial_end, end_derivative.map(|rate| rate.0[lane]))))
+    })
+}
+
+/// A number of each integrator.
+fn abreast<F, const N: usize, const L: usize>(
+    integrators: &[Option<&mut Integrator<'_, F, N>>; L],
+    number: impl Fn(&Integrator<'_, F, N>) -> f64,
+) -> Lanes<L> {
+    Lanes(from_fn(|lane| integrators[lane].as_deref().map_or(0.0, &number)))
 }
 
 /// The control of the length of the steps: each as long as the tolerance allows.
@@ -180,8 +224,14 @@ impl<'a, const N: usize> Control<'a, N> {
         Ok(trial_end)
     }
 
+    /// Keeps the next step within a length.
+    fn shorten(&mut self, longest: f64) {
+        self.length = self.length.min(longest);
+    }
+
     /// Whether the error of the trial step is small enough; proposes the length of the next one.
-    fn accepts(&mut self, error: f64, trial_end: f64) -> bool {
+    fn accepts(&mut self, start: &[f64; N], trial: &step::Trial<f64, N>) -> bool {
+        let error = self.error(start, trial);
         self.statistics.evaluations += step::TRIAL_EVALUATIONS;
         // The eighth root.
         let fitting = SAFETY / error.sqrt().sqrt().sqrt();
@@ -189,7 +239,6 @@ impl<'a, const N: usize> Control<'a, N> {
         if accepted {
             self.statistics.evaluations += 1;
             self.statistics.steps += 1;
-            self.time = trial_end;
             self.length *= self.growth.min(fitting).max(LEAST_GROWTH);
             self.growth = GREATEST_GROWTH;
         } else {
@@ -227,9 +276,9 @@ impl<'a, const N: usize> Control<'a, N> {
         let first = norm(slope);
         let guess = if first > 0.0 { 0.01 * norm(state) / first } else { 1e-6 };
         let guess = guess.min(system.longest_step(state, slope));
-        let euler = std::array::from_fn(|i| state[i] + slope[i] * guess);
+        let euler = from_fn(|i| state[i] + slope[i] * guess);
         let next_slope = system.derivative(&euler);
-        let second = norm(&std::array::from_fn(|i| next_slope[i] - slope[i])) / guess;
+        let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
         let steepest = first.max(second);
         let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };
         // Where the trial overflowed, the guess shrinks until a step is accepted.

@@ -30,27 +30,36 @@ const DRAG_TIMES_A_STEP: f64 = 1.5;
 /// What acts on the vehicle; the parameters may carry derivatives, or belong to several vehicles side by side.
 #[derive(Clone, Copy, Debug)]
 pub struct Forces<P = f64> {
-    planet: Planet,
-    atmosphere: Atmosphere,
-    aerodynamics: Aerodynamics,
+    models: Models,
     parameters: Parameters<P>,
     area_over_mass: P,
     sin_cos_bank: (P, P),
 }
 
-/// The numbers of a case that may vary, beside its state.
+/// What all vehicles side by side have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Models {
+    /// Where they fly.
+    pub planet: Planet,
+    /// The air, which turns with the planet.
+    pub atmosphere: Atmosphere,
+    /// The coefficients.
+    pub aerodynamics: Aerodynamics,
+}
+
+/// The numbers that may vary, beside the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<P> {
     /// kg.
     pub mass: P,
     /// m².
     pub reference_area: P,
-    /// What the lift coefficient has beyond that of the aerodynamics; 0 by itself.
-    pub more_lift: P,
-    /// What the drag coefficient has beyond that of the aerodynamics; 0 by itself.
-    pub more_drag: P,
-    /// Density over that of the atmosphere; 1 by itself.
-    pub density_factor: P,
+    /// `C_L` less that of the model.
+    pub lift_coefficient: P,
+    /// `C_D` less that of the model.
+    pub drag_coefficient: P,
+    /// The density over that of the model.
+    pub density: P,
     /// σ, rad: 0 lift in the plane of radius and velocity, upward;
     /// positive tilts it to the left of the flight direction, towards growing heading (Jameson 2006, equation 22).
     pub bank_angle: P,
@@ -106,11 +115,11 @@ struct Air<S> {
 }
 
 impl<P: Scalar> Forces<P> {
-    /// The forces on a vehicle of these aerodynamics, with these parameters.
-    pub fn new(planet: Planet, atmosphere: Atmosphere, aerodynamics: Aerodynamics, parameters: Parameters<P>) -> Self {
+    /// The forces by these models, with these parameters.
+    pub fn new(models: Models, parameters: Parameters<P>) -> Self {
         let area_over_mass = parameters.reference_area * parameters.mass.recip();
         let sin_cos_bank = parameters.bank_angle.sin_cos();
-        Self { planet, atmosphere, aerodynamics, parameters, area_over_mass, sin_cos_bank }
+        Self { models, parameters, area_over_mass, sin_cos_bank }
     }
 
     /// The acceleration relative to the rotating planet, m/s².
@@ -132,23 +141,23 @@ impl<P: Scalar> Forces<P> {
         let lift_up = lift * cos_bank;
         let lift_left = lift * sin_bank;
         let against = air.drag + lift_up * up.dot(&ahead);
-        let gravity = self.planet.gravity(radius);
+        let gravity = self.models.planet.gravity(radius);
 
-        let rotation = self.planet.rotation_rate;
+        let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
         let mut fall = up.map(|component| component * -gravity);
         fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
         fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
 
         // The density, an exponential, is what all else would wait for.
-        let density = self.density(self.planet.shape.altitude(position));
+        let density = self.density(self.models.planet.shape.altitude(position));
         Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density + fall[i])
     }
 
     /// ρ, kg/m³, at an altitude, m.
     #[inline(always)]
     fn density<S: Over<P>>(&self, altitude: S) -> S {
-        self.atmosphere.density(altitude) * self.parameters.density_factor
+        self.models.atmosphere.density(altitude) * self.parameters.density
     }
 
     /// What the air does to a vehicle of a speed, m/s.
@@ -169,21 +178,21 @@ impl<P: Scalar> Forces<P> {
     /// `C_L` and `C_D`.
     #[inline(always)]
     fn coefficients(&self) -> (P, P) {
-        let Coefficients { lift, drag } = self.aerodynamics.coefficients();
-        (self.parameters.more_lift + lift, self.parameters.more_drag + drag)
+        let Coefficients { lift, drag } = self.models.aerodynamics.coefficients();
+        (self.parameters.lift_coefficient + lift, self.parameters.drag_coefficient + drag)
     }
 }
 
 impl Forces {
     /// Where it flies.
     pub fn planet(&self) -> &Planet {
-        &self.planet
+        &self.models.planet
     }
 
     /// The units of length, m, and speed, m/s, in which the equations are of order one: r₀ and √(g₀r₀).
     fn units(&self) -> [f64; 2] {
-        let length = self.planet.equatorial_radius();
-        [length, (self.planet.gravitational_parameter / length).sqrt()]
+        let length = self.models.planet.equatorial_radius();
+        [length, (self.models.planet.gravitational_parameter / length).sqrt()]
     }
 
     /// The longest step that may start in a state, s.
@@ -196,13 +205,13 @@ impl Forces {
     fn longest_step(&self, state: &PlanetFixed<f64>) -> f64 {
         let PlanetFixed { position, velocity } = state;
         let radius = length(position);
-        let altitude = self.planet.shape.altitude(position);
-        let to_air = (altitude - self.atmosphere.sensible_altitude()).max(0.0);
-        let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.atmosphere.scale_height();
+        let altitude = self.models.planet.shape.altitude(position);
+        let to_air = (altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
+        let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
         let rise = position.dot(velocity) / radius;
-        let inertial = velocity + Vector3::z().cross(position) * self.planet.rotation_rate;
+        let inertial = velocity + Vector3::z().cross(position) * self.models.planet.rotation_rate;
         let level_squared = inertial.norm_squared() - rise * rise;
-        let fall = (self.planet.gravity(radius) - level_squared / radius).max(0.0);
+        let fall = (self.models.planet.gravity(radius) - level_squared / radius).max(0.0);
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
         let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
@@ -215,14 +224,14 @@ impl Forces {
 
     /// D/m, m/s².
     pub fn drag(&self, state: &PlanetFixed<f64>) -> f64 {
-        self.air(length(&state.velocity)).drag * self.density(self.planet.shape.altitude(&state.position))
+        self.air(length(&state.velocity)).drag * self.density(self.models.planet.shape.altitude(&state.position))
     }
 
     /// The loads in a state.
     pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, state: &PlanetFixed<S>) -> Loads<S> {
         let position = &state.position;
         let Directions { radius, speed, up, ahead, cos_gamma, .. } = Directions::of(state);
-        let altitude = self.planet.shape.altitude(position);
+        let altitude = self.models.planet.shape.altitude(position);
         let density = self.density(altitude);
         let dynamic_pressure = density * speed * speed * 0.5;
         let deceleration = if speed.less_than(f64::MIN_POSITIVE) {
@@ -230,8 +239,8 @@ impl Forces {
         } else {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
             let outward = position.x * ahead.x + position.y * ahead.y;
-            self.air(speed).drag * density + self.planet.gravity(radius) * up.dot(&ahead)
-                - outward * self.planet.rotation_rate.powi(2)
+            self.air(speed).drag * density + self.models.planet.gravity(radius) * up.dot(&ahead)
+                - outward * self.models.planet.rotation_rate.powi(2)
         };
         let (lift_coefficient, drag_coefficient) = self.coefficients();
         let lift_coefficient = lift_fade_over_cosine(cos_gamma) * cos_gamma * lift_coefficient;

@@ -1,4 +1,9 @@
-//! The number types in which the physics is written once: `f64`, and the dual numbers of `num-dual`, which carry derivatives.
+//! The number types in which the physics is written once: `f64`, the dual numbers of `num-dual`, which carry derivatives,
+//! and [`Lanes`] of several numbers.
+
+mod lanes;
+
+pub use lanes::Lanes;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -9,7 +14,7 @@ use num_traits::{One, Zero};
 /// A real number, with or without derivatives.
 ///
 /// Formulas keep their constants on the right (`speed * speed * 0.5`), so that these bounds suffice,
-/// and choose with [`select`](Self::select) in place of `if`, so that numbers which hold several values can follow.
+/// and choose with [`select`](Self::select) in place of `if`, since lanes may choose differently.
 /// The value of a dual number goes through the very operations that `f64` goes through, so that both give the same digits:
 /// therefore there is no division, which dual numbers round in another way, but [`recip`](Self::recip).
 pub trait Scalar:
@@ -100,7 +105,7 @@ where
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        if self.re() == 0.0 { Self::zero() } else { DualNum::sqrt(&self) }
+        if self.re() == 0.0 { Self::from(self.re()) } else { DualNum::sqrt(&self) }
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use num_dual::Dual2_64;
 
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::PlanetFixed;
-use crate::motion::{Forces, Parameters};
+use crate::motion::{Forces, Models, Parameters};
 use crate::planet::Planet;
 use crate::vehicle::{Aerodynamics, Vehicle};
 
@@ -300,17 +300,30 @@ impl Scenario {
 impl Case {
     /// What acts on the vehicle.
     pub fn forces(&self) -> Forces {
-        Forces::new(self.planet, self.atmosphere, self.vehicle.aerodynamics, self.parameters())
+        Forces::new(self.models(), self.parameters())
     }
 
-    /// The numbers of the case that may vary, beside its state.
+    /// The models, as far as they hold no number of [`parameters`](Self::parameters).
+    pub fn models(&self) -> Models {
+        let Atmosphere::Exponential { scale_height, .. } = self.atmosphere;
+        let Aerodynamics::Constant { .. } = self.vehicle.aerodynamics;
+        Models {
+            planet: self.planet,
+            atmosphere: Atmosphere::Exponential { surface_density: 1.0, scale_height },
+            aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.0, drag_coefficient: 0.0 },
+        }
+    }
+
+    /// The numbers that may vary, beside the state.
     pub fn parameters(&self) -> Parameters<f64> {
+        let Atmosphere::Exponential { surface_density, .. } = self.atmosphere;
+        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = self.vehicle.aerodynamics;
         Parameters {
             mass: self.vehicle.mass,
             reference_area: self.vehicle.reference_area,
-            more_lift: 0.0,
-            more_drag: 0.0,
-            density_factor: 1.0,
+            lift_coefficient,
+            drag_coefficient,
+            density: surface_density,
             bank_angle: self.bank_angle,
         }
     }

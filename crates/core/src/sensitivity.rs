@@ -6,7 +6,6 @@
 use nalgebra::SVector;
 use num_dual::{DualSVec64, jacobian};
 
-use crate::atmosphere::Atmosphere;
 use crate::coordinates::FlightPath;
 use crate::integrate::{System, follow};
 use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
@@ -56,13 +55,11 @@ type Dual = DualSVec64<INPUTS>;
 
 /// The derivatives of the arrival of a flight.
 pub fn sensitivities(flight: &Trajectory) -> Sensitivities {
-    let case = &flight.case;
-    let Parameters { mass, reference_area, bank_angle, .. } = case.parameters();
-    let Atmosphere::Exponential { surface_density, .. } = case.atmosphere;
-    let start: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
-    let [r, theta, phi, v, gamma, psi] = start;
-    let (lift, drag) = (0.0, 0.0);
-    let numbers = [mass, reference_area, lift, drag, bank_angle, surface_density, r, theta, phi, v, gamma, psi];
+    let Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle } =
+        flight.case.parameters();
+    let [r, theta, phi, v, gamma, psi]: [f64; 6] = FlightPath::from_planet_fixed(&flight.case.initial_state).into();
+    let numbers =
+        [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, r, theta, phi, v, gamma, psi];
     let (_, slopes) = jacobian(|numbers| arrival(flight, numbers.into()), &SVector::from(numbers));
     let gradient = |row: usize| {
         let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, surface_density, state @ ..]: [f64;
@@ -89,16 +86,11 @@ pub fn sensitivities(flight: &Trajectory) -> Sensitivities {
 
 /// Time, longitude, geocentric latitude, speed and flight-path angle at the end of the flight.
 fn arrival(flight: &Trajectory, numbers: [Dual; INPUTS]) -> SVector<Dual, 5> {
-    let [mass, reference_area, more_lift, more_drag, bank_angle, surface_density, start @ ..] = numbers;
-    let case = &flight.case;
-    // A unit of density at the surface, so that the factor is the density there.
-    let Atmosphere::Exponential { scale_height, .. } = case.atmosphere;
-    let atmosphere = Atmosphere::Exponential { surface_density: 1.0, scale_height };
-    let parameters =
-        Parameters { mass, reference_area, more_lift, more_drag, density_factor: surface_density, bank_angle };
-    let forces = Forces::new(case.planet, atmosphere, case.vehicle.aerodynamics, parameters);
+    let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = numbers;
+    let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
+    let forces = Forces::new(flight.case.models(), parameters);
     let start = FlightPath::from(start);
-    match case.solver.equations {
+    match flight.case.solver.equations {
         Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &Cartesian(forces), &start),
         Equations::Spherical => arrival_of::<Spherical, _>(flight, &Spherical(forces), &start),
     }

@@ -1,17 +1,21 @@
 //! The flight: from a scenario to a trajectory.
 
+mod abreast;
 mod descent;
 mod extremes;
+mod flight;
 mod passage;
+
+pub use abreast::arrivals;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::integrate::{IntegrationError, Integrator, Limits, Step};
+use crate::integrate::Step;
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical};
 use crate::scenario::{Equations, Plain, Scenario};
-use crate::trajectory::{Arrival, Termination, Trajectory};
-use descent::Descent;
+use crate::trajectory::{Arrival, Trajectory};
 use extremes::Extremes;
+use flight::Flight;
 use passage::Passage;
 
 /// Why a flight could not be finished.
@@ -94,7 +98,7 @@ fn record<F: Formulation>(
 ) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     let start = F::coordinates(&case.initial_state);
-    regular(motion, 0.0, &start)?;
+    flight::regular(motion, 0.0, &start)?;
     let mut steps: Vec<Step<6>> = Vec::with_capacity(TYPICAL_STEPS);
     let mut extremes = Extremes::new(motion, case.vehicle.has_lift(), &start)?;
     let arrival = fly(scenario, motion, interrupt, |passage| {
@@ -112,64 +116,17 @@ fn fly<F: Formulation>(
     interrupt: &AtomicBool,
     mut observe: impl FnMut(&Passage<F>) -> Result<(), SimulationError>,
 ) -> Result<Arrival, SimulationError> {
-    let case = scenario.case();
-    let limits =
-        Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
-    let (mut time, mut state) = (0.0, F::coordinates(&case.initial_state));
-    regular(motion, time, &state)?;
-    let mut integrator = Integrator::new(motion, state, limits);
-    let mut descent = Descent::new(motion, case.stop.altitude, &state, integrator.derivative());
-    if scenario.rises_from_stop_altitude() {
-        descent.start_upward();
+    let mut flight = Flight::start(scenario, motion, interrupt)?;
+    if scenario.ends_at_start() {
+        return Ok(flight.at_start());
     }
-    let mut looks = 0;
-    let mut termination = scenario.ends_at_start().then_some(Termination::SurfaceImpact);
-    while termination.is_none() {
-        let mut step = integrator.advance(case.stop.time).map_err(|error| failure(motion, error, &state))?;
-        let mut passage = Passage::new(motion, &step);
-        if let Some(crossing) = descent.impact(&passage) {
-            looks += passage.evaluations();
-            step = descent.land(&mut integrator, &step, crossing);
-            passage = Passage::new(motion, &step);
-            termination = Some(Termination::SurfaceImpact);
-        } else if step.end_time >= case.stop.time {
-            termination = Some(Termination::TimeLimit);
+    loop {
+        let step = flight.integrator.advance(scenario.case().stop.time).map_err(|error| flight.failure(error))?;
+        if let Some(arrival) = flight.pass(step, &mut observe)? {
+            return Ok(arrival);
         }
-        (time, state) = (passage.step.end_time, passage.step.end);
-        regular(motion, time, &state)?;
-        observe(&passage)?;
-        looks += passage.evaluations();
-    }
-    let mut statistics = integrator.statistics();
-    statistics.evaluations += looks;
-    let termination = termination.unwrap_or(Termination::TimeLimit);
-    Ok(Arrival { termination, time, state: F::planet_fixed(&state), statistics })
-}
-
-/// Refuses a state in which the equations break down.
-fn regular<F: Formulation>(motion: &F, time: f64, state: &[f64; 6]) -> Result<(), SimulationError> {
-    match motion.singularity(state, SINGULAR) {
-        Some(at) => Err(SimulationError::Singularity { time, at }),
-        None => Ok(()),
     }
 }
 
-/// What an integration error after the `last` state means for the flight: near a singularity, that is the reason.
-fn failure<F: Formulation>(motion: &F, error: IntegrationError, last: &[f64; 6]) -> SimulationError {
-    let (time, otherwise) = match error {
-        IntegrationError::StepLimit { time, limit } => (time, SimulationError::StepLimit { time, limit }),
-        IntegrationError::StepTooSmall { time } => (time, SimulationError::TooStiff { time }),
-        IntegrationError::Interrupted { time } => return SimulationError::Interrupted { time },
-    };
-    match motion.singularity(last, NEARLY_SINGULAR) {
-        Some(at) => SimulationError::Singularity { time, at },
-        None => otherwise,
-    }
-}
-
-/// Closer to a singularity than this (rad, or parts of the circular speed) rounding costs more digits than the tolerances allow.
-const SINGULAR: f64 = 1e-8;
-/// An integration that fails this close to a singularity fails because of it.
-const NEARLY_SINGULAR: f64 = 1e-2;
 /// Steps for which room is made at once: more than most flights take.
 const TYPICAL_STEPS: usize = 64;

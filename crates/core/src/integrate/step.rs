@@ -2,7 +2,7 @@
 
 use super::System;
 use super::tableau::{self, Row};
-use crate::scalar::Scalar;
+use crate::scalar::{Lanes, Scalar};
 
 /// Evaluations of the derivative for a trial step.
 pub(super) const TRIAL_EVALUATIONS: usize = tableau::STAGES.len();
@@ -97,6 +97,19 @@ impl<const N: usize> Trial<f64, N> {
             start_derivative: self.slopes[0],
             end_derivative,
             slopes: std::array::from_fn(|i| self.slopes[FIRST_KEPT + i]),
+        }
+    }
+}
+
+impl<const N: usize, const L: usize> Trial<Lanes<L>, N> {
+    /// The trial of one lane.
+    pub(super) fn lane(&self, lane: usize) -> Trial<f64, N> {
+        let of_lane = |numbers: &[Lanes<L>; N]| numbers.map(|number| number.0[lane]);
+        Trial {
+            slopes: std::array::from_fn(|stage| of_lane(&self.slopes[stage])),
+            end: of_lane(&self.end),
+            error_fifth: of_lane(&self.error_fifth),
+            error_third: of_lane(&self.error_third),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The spherical formulation of the thesis. It is singular at the poles, in vertical flight and at rest.
 
-use super::{Forces, Formulation, Singularity, lift_fade_over_cosine};
+use super::{Forces, Formulation, Models, Singularity, lift_fade_over_cosine};
 use crate::coordinates::{FlightPath, PlanetFixed};
 use crate::integrate::{Pace, System};
 use crate::scalar::{Over, Scalar};
@@ -13,7 +13,7 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text.
     #[inline(always)]
     fn derivative(&self, coordinates: &[S; 6]) -> [S; 6] {
-        let Forces { planet, sin_cos_bank: (sin_sigma, cos_sigma), .. } = self.0;
+        let Forces { models: Models { planet, .. }, sin_cos_bank: (sin_sigma, cos_sigma), .. } = self.0;
         let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
             FlightPath::from(*coordinates);
         let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();

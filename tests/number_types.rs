@@ -1,0 +1,234 @@
+//! One physics for every number: lanes give the digits of `f64`, dual numbers its derivatives.
+
+use std::sync::atomic::AtomicBool;
+
+use proptest::prelude::*;
+use reentry::integrate::System;
+use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
+use reentry::scalar::{Lanes, Scalar};
+use reentry::sensitivity::{Gradient, Sensitivities, sensitivities};
+use reentry::simulate::{arrival, arrivals};
+use reentry::trajectory::Termination;
+use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Scenario, Stop};
+
+use crate::check::near;
+use crate::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
+
+/// Parameters of four and eight vehicles, each a little different, and their states at 20 to 90 km.
+fn spread<const L: usize>(case: &Case) -> [(Parameters<f64>, FlightPath<f64>); L] {
+    std::array::from_fn(|lane| {
+        let part = lane as f64 / L as f64;
+        let mut state = FlightPath::from_planet_fixed(&case.initial_state);
+        state.radius = 6_398_137.0 + 70e3 * part;
+        state.heading += part;
+        let parameters = case.parameters();
+        (Parameters { mass: parameters.mass * (1.0 + part), bank_angle: part, ..parameters }, state)
+    })
+}
+
+fn derivatives_agree<const L: usize>(case: &Case) {
+    let members = spread::<L>(case);
+    let lanes = |number: &dyn Fn(&(Parameters<f64>, FlightPath<f64>)) -> f64| Lanes(members.each_ref().map(number));
+    let parameters = Parameters {
+        mass: lanes(&|member| member.0.mass),
+        bank_angle: lanes(&|member| member.0.bank_angle),
+        reference_area: Lanes::from(case.parameters().reference_area),
+        lift_coefficient: Lanes::from(case.parameters().lift_coefficient),
+        drag_coefficient: Lanes::from(case.parameters().drag_coefficient),
+        density: Lanes::from(case.parameters().density),
+    };
+    let abreast = Forces::new(case.models(), parameters);
+    let states = members.map(|(_, state)| -> [f64; 6] { state.into() });
+    let places = members.map(|(_, state)| -> [f64; 6] { state.to_planet_fixed().into() });
+    let by_lane = |rows: &[[f64; 6]; L]| std::array::from_fn(|i| Lanes(rows.map(|row| row[i])));
+    let spherical = Spherical(abreast).derivative(&by_lane(&states));
+    let cartesian = Cartesian(abreast).derivative(&by_lane(&places));
+    for lane in 0..L {
+        let alone = Forces::new(case.models(), members[lane].0);
+        let digits = |lanes: [Lanes<L>; 6]| lanes.map(|component| component.0[lane].to_bits());
+        assert_eq!(
+            digits(spherical),
+            Spherical(alone).derivative(&states[lane]).map(f64::to_bits),
+            "lane {lane} of {L}"
+        );
+        assert_eq!(
+            digits(cartesian),
+            Cartesian(alone).derivative(&places[lane]).map(f64::to_bits),
+            "lane {lane} of {L}"
+        );
+    }
+}
+
+#[test]
+fn the_derivative_in_lanes_has_the_digits_of_f64() {
+    let ellipsoid = Case { planet: reentry::Planet::EARTH_WGS84, ..target_2() };
+    for case in [target_2(), ellipsoid, in_vacuum(target_2())] {
+        derivatives_agree::<4>(&case);
+        derivatives_agree::<8>(&case);
+    }
+}
+
+#[test]
+fn lanes_choose_each_by_itself() {
+    let numbers = Lanes([-1.0, 0.0, 2.0, f64::NAN]);
+    let chosen = Lanes::select(numbers.less_than(1.0), numbers + 10.0, numbers * 10.0);
+    assert_eq!(chosen.0[..3], [9.0, 10.0, 20.0]);
+    assert!(chosen.0[3].is_nan());
+}
+
+proptest! {
+    #![proptest_config(config(12))]
+
+    /// Flights of different lengths, tolerances, planets and formulations: lanes are refilled, and groups change.
+    #[test]
+    fn flights_in_lanes_end_at_the_digits_of_flights_alone(
+        cases in prop::collection::vec((random_entry(), 4..12_i32, any::<bool>()), 1..30)
+    ) {
+        let scenarios: Vec<_> = cases
+            .into_iter()
+            .map(|(case, digits, turned)| {
+                let case = with_tolerance(case, 10_f64.powi(-digits));
+                Scenario::new(if turned { spherical(case) } else { case }).unwrap()
+            })
+            .collect();
+        let interrupt = AtomicBool::new(false);
+        let alone: Vec<_> = scenarios.iter().map(|scenario| arrival(scenario, &interrupt)).collect();
+        // Debug output, in which numbers have all their digits, also compares errors and counts.
+        prop_assert_eq!(format!("{:?}", arrivals::<4>(&scenarios, &interrupt)), format!("{alone:?}"));
+        prop_assert_eq!(format!("{:?}", arrivals::<8>(&scenarios, &interrupt)), format!("{alone:?}"));
+    }
+
+    #[test]
+    fn an_arrival_is_the_end_of_the_flight(case in random_entry()) {
+        let flight = fly(case);
+        let end = arrival(&Scenario::new(case).unwrap(), &AtomicBool::new(false)).unwrap();
+        prop_assert_eq!(end.time.to_bits(), flight.end_time().to_bits());
+        prop_assert_eq!(FlightPath::from_planet_fixed(&end.state).wrapped(), flight.last().flight_path);
+        prop_assert_eq!(end.termination, flight.termination());
+    }
+}
+
+#[test]
+fn flights_in_lanes_end_where_they_start_when_they_must_and_when_the_flag_is_raised() {
+    let ground = FlightPath { radius: 6_378_137.0, ..FlightPath::from_planet_fixed(&target_2().initial_state) };
+    let grounded = Case { initial_state: ground.to_planet_fixed(), ..target_2() };
+    let scenarios: Vec<_> = [grounded, target_2(), grounded].map(|case| Scenario::new(case).unwrap()).into();
+    let ends = arrivals::<4>(&scenarios, &AtomicBool::new(false));
+    let times: Vec<_> = ends.iter().map(|end| end.unwrap().time).collect();
+    assert_eq!([times[0], times[2]], [0.0; 2]);
+    near("TARGET case 2", times[1], 157.436_433, 1e-6);
+    let interrupted = arrivals::<4>(&scenarios[1..2], &AtomicBool::new(true));
+    assert!(matches!(interrupted[..], [Err(reentry::simulate::SimulationError::Interrupted { .. })]));
+}
+
+/// The arrival's time, longitude, geocentric latitude, speed and flight-path angle.
+fn outputs(case: Case) -> [f64; 5] {
+    let flight = fly(with_tolerance(case, 1e-13));
+    let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } = flight.last().flight_path;
+    [flight.end_time(), longitude, geocentric_latitude, speed, flight_path_angle]
+}
+
+/// The case with one of the twelve numbers changed by an amount.
+fn varied(case: Case, input: usize, amount: f64) -> Case {
+    let mut vehicle = case.vehicle;
+    let Aerodynamics::Constant { mut lift_coefficient, mut drag_coefficient } = vehicle.aerodynamics;
+    let Atmosphere::Exponential { mut surface_density, scale_height } = case.atmosphere;
+    let mut bank_angle = case.bank_angle;
+    let mut state: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
+    *match input {
+        0 => &mut vehicle.mass,
+        1 => &mut vehicle.reference_area,
+        2 => &mut lift_coefficient,
+        3 => &mut drag_coefficient,
+        4 => &mut bank_angle,
+        5 => &mut surface_density,
+        component => &mut state[component - 6],
+    } += amount;
+    vehicle.aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient };
+    let atmosphere = Atmosphere::Exponential { surface_density, scale_height };
+    let initial_state = FlightPath::from(state).to_planet_fixed();
+    Case { vehicle, atmosphere, bank_angle, initial_state, ..case }
+}
+
+fn rows(sensitivities: &Sensitivities) -> [[f64; 12]; 5] {
+    let Sensitivities { time, longitude, geocentric_latitude, speed, flight_path_angle } = sensitivities;
+    [time, longitude, geocentric_latitude, speed, flight_path_angle].map(|gradient| {
+        let Gradient { mass, reference_area, lift_coefficient, drag_coefficient, .. } = *gradient;
+        let [r, theta, phi, v, gamma, psi]: [f64; 6] = gradient.initial_state.into();
+        let Gradient { bank_angle, surface_density, .. } = *gradient;
+        let others = [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, surface_density];
+        let [a, b, c, d, e, f] = others;
+        [a, b, c, d, e, f, r, theta, phi, v, gamma, psi]
+    })
+}
+
+/// Central differences of flights at 1e-13, whose error is that of their second order and some rounding.
+fn agrees_with_differences(what: &str, case: Case) {
+    let slopes = rows(&sensitivities(&fly(case)));
+    // Steps that move the impact by metres.
+    let steps = [
+        1e-5 * case.vehicle.mass,
+        1e-5 * case.vehicle.reference_area,
+        1e-5,
+        1e-5,
+        1e-5,
+        1e-5,
+        1.0,
+        1e-6,
+        1e-6,
+        0.1,
+        1e-6,
+        1e-6,
+    ];
+    for (input, step) in steps.into_iter().enumerate() {
+        let (above, below) = (outputs(varied(case, input, step)), outputs(varied(case, input, -step)));
+        for output in 0..5 {
+            let difference = (above[output] - below[output]) / (2.0 * step);
+            // The noise of an arrival at 1e-13 in s, rad, rad, m/s and rad.
+            let noise = [1e-8, 1e-14, 1e-14, 1e-8, 1e-11][output] / step;
+            let what = format!("{what}: output {output} by input {input}");
+            near(&what, slopes[output][input], difference, 2e-4 * difference.abs() + noise);
+        }
+    }
+}
+
+#[test]
+fn sensitivities_are_the_slopes_of_the_impact() {
+    let ellipsoid = Case { planet: reentry::Planet::EARTH_WGS84, ..target_2() };
+    agrees_with_differences("TARGET case 2", target_2());
+    agrees_with_differences("over the ellipsoid", ellipsoid);
+    agrees_with_differences("spherical", spherical(ellipsoid));
+    let timed = Case { stop: Stop { time: 70.0, ..Stop::default() }, ..ellipsoid };
+    agrees_with_differences("to a given time", timed);
+    assert_eq!(rows(&sensitivities(&fly(timed)))[0], [0.0; 12]);
+    // Slopes by coefficients and densities of zero are those on the one side that there is: the other quantities are enough.
+    let ballistic = Case { vehicle: vehicle(700.0, 0.216_419, 0.0, 0.2), ..ellipsoid };
+    agrees_with_differences("without lift", ballistic);
+}
+
+/// In a vacuum straight up and down: t = 2v/g and the rest by hand, and the slope by a density that is zero.
+#[test]
+fn sensitivities_of_a_stone_thrown_upward_are_those_of_the_textbook() {
+    let planet = reentry::Planet { rotation_rate: 0.0, ..reentry::Planet::EARTH_WGS84.spherical() };
+    let (radius, speed) = (6_378_137.0, 100.0);
+    let up =
+        FlightPath { radius, longitude: 0.3, geocentric_latitude: 0.2, speed, flight_path_angle: 1.2, heading: 0.4 };
+    let stone = Case { planet, initial_state: up.to_planet_fixed(), bank_angle: 0.0, ..in_vacuum(target_2()) };
+    let stone = Case { vehicle: vehicle(1.0, 0.01, 0.0, 1.0), ..stone };
+    let flight = fly(stone);
+    assert_eq!(flight.termination(), Termination::SurfaceImpact);
+    let slopes = sensitivities(&flight);
+    let gravity = planet.gravitational_parameter / (radius * radius);
+    // A flat, uniform field is right to the height over the radius: 7e-5, and as much again for the shape of the Earth below.
+    near("dt/dv = 2 sin γ/g", slopes.time.initial_state.speed, 2.0 * 1.2_f64.sin() / gravity, 1e-3);
+    near(
+        "dt/dγ = 2 v cos γ/g",
+        slopes.time.initial_state.flight_path_angle,
+        2.0 * speed * 1.2_f64.cos() / gravity,
+        1e-2,
+    );
+    near("dv/dv", slopes.speed.initial_state.speed, 1.0, 1e-6);
+    near("by mass", slopes.speed.mass, 0.0, 1e-12);
+    // Drag on the way takes speed, even where there is none yet: to first order dv/dt = -(S C_D/m) ρ v²/2.
+    assert!(slopes.speed.surface_density < -0.1, "{}", slopes.speed.surface_density);
+}
