@@ -12,7 +12,7 @@ const CORE: [&[&str]; 8] = [
     &["motion"],
     &["scenario"],
     &["trajectory"],
-    &["simulate"],
+    &["simulate", "analytic"],
 ];
 
 /// The levels of the service.

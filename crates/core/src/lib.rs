@@ -55,6 +55,8 @@ pub mod scenario;
 pub mod simulate;
 pub mod trajectory;
 
+pub mod analytic;
+
 pub mod motion;
 
 pub mod atmosphere;

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::error::ApiError;
 use crate::format::Format;
+use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
 use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
 use crate::wire::trajectory::SimulateResponse;
@@ -48,4 +49,19 @@ fn rows(job: &Job, flight: &Trajectory, limit: usize) -> Result<Option<Vec<Fligh
 /// When the state is not sound.
 pub fn convert(tree: Value) -> Result<Vec<u8>, ApiError> {
     Ok(serde_json::to_vec(&ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?)?)
+}
+
+/// Sets a theory beside a flight; `interrupt` ends the flight early.
+///
+/// # Errors
+/// When the case is not sound, the theory does not apply, and as [`simulate`] otherwise.
+pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+    let AnalyticJob { job, solution, theory } = AnalyticJob::try_from_tree(tree).map_err(ApiError::Invalid)?;
+    let flight = fly(&job.scenario, interrupt)?;
+    let points = rows(&job, &flight, row_limit)?.unwrap_or_default();
+    let response = AnalyticResponse::new(job, solution, &theory, &flight, &points);
+    Ok(match format {
+        Format::Csv => response.to_csv()?,
+        Format::Json => serde_json::to_vec(&response)?,
+    })
 }
