@@ -87,6 +87,9 @@ impl fmt::Display for End {
 /// The angle, 5°, up to which sin γ ≈ γ and cos γ ≈ 1 (Jameson 2006, equations 74 and 75) hold to 0.4 %.
 pub const SMALL_ANGLE: f64 = PI / 36.0;
 
+/// A flight-path angle this near zero, rad, is level to rounding.
+const LEVEL: f64 = 16.0 * f64::EPSILON;
+
 /// Why a theory does not apply to a case at all.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
@@ -109,11 +112,14 @@ pub enum Fault {
     #[error("must be greater than 0: the theory is of flight through air, got 0")]
     NoAir,
     /// The air at entry is thinner than any number.
-    #[error("begins so high that the density of the air is zero: the theory is of flight through air")]
+    #[error("the flight begins so high that the air has no density: the theory is of flight through air")]
     NoAirAtEntry,
     /// The flight does not descend at first.
-    #[error("must be less than 0: the theory is of a descent")]
-    NoDescent,
+    #[error("the flight-path angle must be less than 0: the theory is of a descent")]
+    NoDescent {
+        /// `γ_e`, rad.
+        flight_path_angle: f64,
+    },
 }
 
 /// Everything that keeps a theory from applying to a case.
@@ -184,8 +190,8 @@ impl Theory {
         if faults.is_empty() && eta_e == 0.0 {
             faults.push(Fault::NoAirAtEntry);
         }
-        if solution.descends() && entry.flight_path_angle >= 0.0 {
-            faults.push(Fault::NoDescent);
+        if solution.descends() && entry.flight_path_angle >= -LEVEL {
+            faults.push(Fault::NoDescent { flight_path_angle: entry.flight_path_angle.max(0.0) });
         }
         if !faults.is_empty() {
             return Err(AnalyticError(faults));

@@ -4,7 +4,7 @@ use reentry::analytic::{self, Comparison, Fault as TheoryFault, Prediction, Theo
 use reentry::trajectory::{FlightPoint, Trajectory};
 use serde::Serialize;
 use serde_json::Value;
-use utoipa::openapi::schema::ObjectBuilder;
+use utoipa::openapi::schema::{ObjectBuilder, RefBuilder};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
@@ -65,7 +65,9 @@ impl PartialSchema for AnalyticRequest {
         let RefOr::T(Schema::Object(case)) = SimulateRequest::schema() else { return SimulateRequest::schema() };
         let description = "A case to simulate, as for `/simulate`, and the theory to set beside it. \
                            `output` cannot be `{\"trajectory\": false}`: the predictions are made at the rows.";
-        let solution = utoipa::openapi::Ref::from_schema_name(Solution::name());
+        let solution = RefBuilder::new()
+            .ref_location_from_schema_name(Solution::name())
+            .description(Some("The theory to set beside the simulated flight."));
         let builder = ObjectBuilder::from(case).description(Some(description));
         builder.property("solution", solution).required("solution").into()
     }
@@ -120,7 +122,7 @@ impl AnalyticJob {
                 Ok(Self { job: Job { scenario, sampling, request, echo }, solution, theory })
             }
             (scenario, theory, rowless) => {
-                let theory = theory.err().into_iter().flatten().map(|fault| fault_of(&fault, &request.initial_state));
+                let theory = theory.err().into_iter().flatten().map(|fault| fault_of(&fault, &request));
                 Err(scenario.err().into_iter().flatten().chain(theory).chain(rowless).collect())
             }
         }
@@ -128,17 +130,23 @@ impl AnalyticJob {
 }
 
 /// What keeps a theory from applying, at the field of the request that it concerns.
-fn fault_of(fault: &TheoryFault, initial_state: &State) -> Fault {
-    let has_angle = matches!(initial_state, State::PlanetRelative(_) | State::Geodetic(_));
+fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
+    let has_angle = matches!(request.initial_state, State::PlanetRelative(_) | State::Geodetic(_));
     let pointer = match fault {
         TheoryFault::NoLift | TheoryFault::Lift { .. } => "/vehicle/aerodynamics/lift_coefficient",
         TheoryFault::NoDrag => "/vehicle/aerodynamics/drag_coefficient",
         TheoryFault::NoArea => "/vehicle/reference_area",
         TheoryFault::NoAir => "/atmosphere/surface_density",
-        TheoryFault::NoDescent if has_angle => "/initial_state/flight_path_angle",
-        TheoryFault::NoDescent | TheoryFault::NoAirAtEntry => "/initial_state",
+        TheoryFault::NoDescent { .. } if has_angle => "/initial_state/flight_path_angle",
+        TheoryFault::NoDescent { .. } | TheoryFault::NoAirAtEntry => "/initial_state",
     };
-    Fault::new(pointer, fault.to_string())
+    let detail = match fault {
+        TheoryFault::NoDescent { flight_path_angle } => {
+            format!("{fault}, got {}", request.angle_unit.from_radians(*flight_path_angle))
+        }
+        _ => fault.to_string(),
+    };
+    Fault::new(pointer, detail)
 }
 
 /// The simulated flight: one array a quantity, all of one length, time strictly increasing.
@@ -189,8 +197,10 @@ pub struct Differences {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Valid {
     /// Where it begins, m, along the radius vector; null where the theory never gives a number.
+    #[schema(required = true)]
     pub from_altitude: Option<f64>,
     /// Where it ends, m, located between the rows; null where the theory never gives a number.
+    #[schema(required = true)]
     pub to_altitude: Option<f64>,
     /// Why it ends, or never begins.
     pub ends_because: String,
