@@ -18,6 +18,7 @@ const LISTING: Planet = Planet::EARTH_JAMESON_LISTING;
 const BETA: f64 = 1.0 / 6935.0;
 
 /// Jameson 2006, Tables 4 to 7, on a sphere.
+#[expect(clippy::approx_constant, reason = "the angles are as printed")]
 fn table(number: u8, planet: Planet) -> Case {
     let steep = (-85.0_f64).to_radians();
     let (body, radius, latitude, speed, flight_path_angle, heading) = match number {
@@ -59,7 +60,7 @@ fn worst(solution: Solution, case: Case, above: f64) -> (f64, f64) {
     })
 }
 
-/// The thesis: "could only be plotted to an altitude of 21.3 km", read off a figure. With ln(η/η) as printed it would be 21.30 km.
+/// The thesis says 21.3 km, which is what the equation gives as printed, with ln(η/η): 21.301 km, by hand.
 #[test]
 fn the_bracket_of_equation_88_reaches_zero_at_21_47_km() {
     for (planet, altitude) in [(LISTING, 21_465.94), (at_rest(LISTING), 21_465.94), (Planet::EARTH_WGS84, 21_465.93)] {
@@ -153,7 +154,7 @@ fn steep_glide_solves_the_equations_of_lift_and_drag() {
     }
 }
 
-/// Where lift is next to nothing, the steep glide is a straight line without gravity: V² = V_e² exp[2(η - η_e)/sin γ_e].
+/// Where lift is next to nothing, the steep glide is a straight line without gravity: V² = `V_e²` exp[2(η - `η_e)/sin` `γ_e`].
 #[test]
 fn a_steep_glide_keeps_its_digits_as_lift_vanishes() {
     for lift in [1e-6, 1e-12, 1e-18, 1e-100, -1e-100] {
@@ -166,7 +167,7 @@ fn a_steep_glide_keeps_its_digits_as_lift_vanishes() {
     }
 }
 
-/// dV²/dη = 2V²/sin γ_e + 2g₀/(βη): drag and gravity along a straight line, by Runge and Kutta's method in ln η.
+/// dV²/dη = 2V²/sin `γ_e` + 2g₀/(βη): drag and gravity along a straight line, by Runge and Kutta's method in ln η.
 #[test]
 fn steep_ballistic_solves_the_equation_of_drag_and_gravity() {
     // As the thesis has it, and a body so light that e^α overflows.
@@ -213,7 +214,7 @@ fn shallow_glide_keeps_its_balance() {
     }
 }
 
-/// ½ dγ²/dη = -K with K = k + (1/(βr₀η))(1 - g₀r₀/V_e²), and V² = V_e² exp[2(γ_e - γ)/K].
+/// ½ dγ²/dη = -K with K = k + (1/(βr₀η))(1 - `g₀r₀/V_e²`), and V² = `V_e²` exp[`2(γ_e` - γ)/K].
 #[test]
 fn medium_glide_is_consistent_with_itself_and_its_equation() {
     let case = table(7, LISTING);
@@ -279,7 +280,7 @@ fn loh_becomes_first_order_as_the_planet_grows() {
     relative("a thousandth", large * 1000.0, small, 1e-3);
 }
 
-/// The altitude at which cos γ of equation 81 is 1 is that of k(η - η_e) = 1 - cos γ_e.
+/// The altitude at which cos γ of equation 81 is 1 is that of k(η - `η_e`) = 1 - cos `γ_e`.
 #[test]
 fn a_steep_glide_ends_where_it_levels_out() {
     let heavy_lift = Case { vehicle: vehicle(50.0, 0.1, 0.3, 0.1), ..table(5, LISTING) };
@@ -340,6 +341,23 @@ fn a_theory_that_never_holds_says_why() {
     let (_, Comparison { predictions, validity }) = compare(Solution::ShallowGlide, case, 20);
     assert!(predictions.iter().all(|prediction| *prediction == Prediction::default()));
     assert_eq!((validity.from_altitude, validity.to_altitude, validity.end), (None, None, End::LargeAngle));
+}
+
+#[test]
+fn what_no_number_holds_is_no_prediction() {
+    let gone = |solution, case: Case, eta: f64, speed: f64| {
+        assert_eq!(theory(solution, case).prediction(&at(&case, eta, speed)), Err(End::Overflow), "{solution:?}");
+    };
+    // C_L/C_D beyond all numbers.
+    let case = Case { vehicle: vehicle(50.0, 0.01, 1e300, 1e-300), ..table(5, LISTING) };
+    for solution in [Solution::ShallowGlide, Solution::Loh, Solution::SteepGlide] {
+        gone(solution, case, 0.01, 5000.0);
+    }
+    // Loh's g₀r₀/V² at rest, at entry 1/0 times 0.
+    let loh = table(4, LISTING);
+    let mut entry = fly(loh).initial();
+    entry.flight_path.speed = 0.0;
+    assert_eq!(theory(Solution::Loh, loh).prediction(&entry), Err(End::Overflow));
 }
 
 #[test]

@@ -129,6 +129,13 @@ async fn the_end_is_located_between_the_rows_and_said_why() {
 }
 
 #[tokio::test]
+async fn the_readme_has_the_table_that_make_theory_prints() {
+    let table = reentry_tests::theory::table().await;
+    assert_eq!(table.lines().count(), 7);
+    assert!(include_str!("../../README.md").contains(&table), "the README is out of date: run `make theory`\n{table}");
+}
+
+#[tokio::test]
 async fn degrees_give_the_same_comparison_as_radians() {
     for solution in SOLUTIONS {
         let radians = case(solution);

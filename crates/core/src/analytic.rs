@@ -2,7 +2,7 @@
 //!
 //! Each solution predicts speed, flight-path angle and drag at the density of the air through which a simulated flight passes.
 //! The theories know a planet that does not rotate and a vehicle that does not bank: the whole lift points upward.
-//! η = ρSC_D/(2mβ) is the density without its dimensions, β = 1/H, k = C_L/C_D, r₀ the equatorial radius and
+//! η = `ρSC_D/(2mβ)` is the density without its dimensions, β = 1/H, k = `C_L/C_D`, r₀ the equatorial radius and
 //! g₀ the acceleration of gravity there; the subscript e denotes the initial state.
 //!
 //! # Reference
@@ -153,9 +153,9 @@ impl Solution {
 #[derive(Clone, Copy, Debug)]
 pub struct Theory {
     solution: Solution,
-    /// SC_D/(2mβ), m³/kg: η over the density.
+    /// `SC_D/(2mβ)`, m³/kg: η over the density.
     eta_by_density: f64,
-    /// k = C_L/C_D.
+    /// k = `C_L/C_D`.
     k: f64,
     /// β = 1/H, 1/m.
     beta: f64,
@@ -163,11 +163,11 @@ pub struct Theory {
     g0: f64,
     /// r₀, m.
     r0: f64,
-    /// V_e, m/s.
+    /// `V_e`, m/s.
     speed_e: f64,
-    /// γ_e, rad.
+    /// `γ_e`, rad.
     gamma_e: f64,
-    /// η_e.
+    /// `η_e`.
     eta_e: f64,
 }
 
@@ -222,7 +222,7 @@ impl Theory {
             Solution::ShallowGlide => self.shallow_glide(eta),
             Solution::Loh => self.loh(eta, point.flight_path.speed),
             Solution::SteepGlide => self.steep_glide(eta),
-            Solution::SteepBallistic => self.steep_ballistic(eta),
+            Solution::SteepBallistic => Ok(self.steep_ballistic(eta)),
             Solution::MediumGlide => self.medium_glide(eta),
         }?;
         let Prediction { speed, flight_path_angle, drag_deceleration } = prediction;

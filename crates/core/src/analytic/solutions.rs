@@ -45,8 +45,8 @@ impl Theory {
 
     /// Steep, gliding entry, on which lift and drag outweigh gravity and centrifugal relief.
     ///
-    /// Equation 81 is printed with `γ_e` for cos γ_e, equation 82 with the exponent (2γ_e - γ)/k, and equation 83 with V for V_e
-    /// and the exponent 2(γ - γ_e)/k.
+    /// Equation 81 is printed with `γ_e` for `cos γ_e`, equation 82 with the exponent `(2γ_e - γ)/k`, and equation 83 with V for `V_e`
+    /// and the exponent `2(γ - γ_e)/k`.
     ///
     /// # Reference
     /// Jameson 2006, equations 81 to 83, "Steep, Gliding Entry".
@@ -68,7 +68,7 @@ impl Theory {
     ///
     /// # Reference
     /// Jameson 2006, equations 84 to 87, "Steep, Ballistic Entry"; the deceleration is that of equation 79.
-    pub(super) fn steep_ballistic(&self, eta: f64) -> Result<Prediction, End> {
+    pub(super) fn steep_ballistic(&self, eta: f64) -> Prediction {
         let Self { beta, g0, speed_e, gamma_e, eta_e, .. } = *self;
         // (84) γ = γ_e
         let gamma = gamma_e;
@@ -79,12 +79,13 @@ impl Theory {
         let decay = (alpha_e - alpha).exp();
         let speed_squared =
             decay * speed_e * speed_e + 2.0 * g0 / beta * (scaled_ei(alpha) - decay * scaled_ei(alpha_e));
-        Ok(Prediction::of(speed_squared, gamma, beta * eta * speed_squared))
+        Prediction::of(speed_squared, gamma, beta * eta * speed_squared)
     }
 
     /// Medium, gliding entry from more than circular speed, by Wang and Ting.
     ///
-    /// Equation 88 is printed with ln(η/η) for ln(η/η_e).
+    /// Equation 88 is printed with ln(η/η) for `ln(η/η_e)`. As printed, its bracket reaches zero at 21.30 km on the case of Table 7,
+    /// the altitude that the thesis reports; as it must be, at 21.47 km.
     ///
     /// # Reference
     /// Jameson 2006, equations 88 to 90, "Medium, Gliding Entry at Supercircular Velocity".

@@ -14,7 +14,7 @@ use super::scenario::{Job, SimulateRequest};
 use super::state::State;
 use super::trajectory::Warning;
 
-/// The theory: η = ρSC_D/(2mβ), β = 1/scale height, k = C_L/C_D; e denotes the initial state; equations of Jameson 2006.
+/// The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Solution {
@@ -22,9 +22,9 @@ pub enum Solution {
     ShallowGlide,
     /// Equation 80: γ of a descent to second order, with the simulated speed. Needs lift.
     Loh,
-    /// Equations 81 to 83: cos γ = cos γ_e + k(η - η_e), V² = V_e² exp(2(γ_e - γ)/k). Needs lift and a descent.
+    /// Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Needs lift and a descent.
     SteepGlide,
-    /// Equations 84 to 87: γ = γ_e, and V of a straight line. Needs a descent, without lift.
+    /// Equations 84 to 87: γ = `γ_e`, and V of a straight line. Needs a descent, without lift.
     SteepBallistic,
     /// Equations 88 to 90: Wang and Ting's, from more than circular speed. Needs lift and a descent.
     MediumGlide,
