@@ -154,7 +154,7 @@ fn steep_glide_solves_the_equations_of_lift_and_drag() {
     }
 }
 
-/// Where lift is next to nothing, the steep glide is a straight line without gravity: V² = `V_e²` exp[2(η - `η_e)/sin` `γ_e`].
+/// Where lift is next to nothing, the steep glide is a straight line without gravity: `V² = V_e² exp[2(η - η_e)/sin γ_e]`.
 #[test]
 fn a_steep_glide_keeps_its_digits_as_lift_vanishes() {
     for lift in [1e-6, 1e-12, 1e-18, 1e-100, -1e-100] {
@@ -167,7 +167,7 @@ fn a_steep_glide_keeps_its_digits_as_lift_vanishes() {
     }
 }
 
-/// dV²/dη = 2V²/sin `γ_e` + 2g₀/(βη): drag and gravity along a straight line, by Runge and Kutta's method in ln η.
+/// `dV²/dη = 2V²/sin γ_e + 2g₀/(βη)`: drag and gravity along a straight line, by Runge and Kutta's method in ln η.
 #[test]
 fn steep_ballistic_solves_the_equation_of_drag_and_gravity() {
     // As the thesis has it, and a body so light that e^α overflows.
@@ -214,7 +214,7 @@ fn shallow_glide_keeps_its_balance() {
     }
 }
 
-/// ½ dγ²/dη = -K with K = k + (1/(βr₀η))(1 - `g₀r₀/V_e²`), and V² = `V_e²` exp[`2(γ_e` - γ)/K].
+/// `½ dγ²/dη = -K` with `K = k + (1/(βr₀η))(1 - g₀r₀/V_e²)`, and `V² = V_e² exp[2(γ_e - γ)/K]`.
 #[test]
 fn medium_glide_is_consistent_with_itself_and_its_equation() {
     let case = table(7, LISTING);
@@ -280,7 +280,7 @@ fn loh_becomes_first_order_as_the_planet_grows() {
     relative("a thousandth", large * 1000.0, small, 1e-3);
 }
 
-/// The altitude at which cos γ of equation 81 is 1 is that of k(η - `η_e`) = 1 - cos `γ_e`.
+/// The altitude at which cos γ of equation 81 is 1 is that of `k(η - η_e) = 1 - cos γ_e`.
 #[test]
 fn a_steep_glide_ends_where_it_levels_out() {
     let heavy_lift = Case { vehicle: vehicle(50.0, 0.1, 0.3, 0.1), ..table(5, LISTING) };
@@ -345,14 +345,10 @@ fn a_theory_that_never_holds_says_why() {
 
 #[test]
 fn what_no_number_holds_is_no_prediction() {
-    let gone = |solution, case: Case, eta: f64, speed: f64| {
-        assert_eq!(theory(solution, case).prediction(&at(&case, eta, speed)), Err(End::Overflow), "{solution:?}");
-    };
-    // C_L/C_D beyond all numbers.
-    let case = Case { vehicle: vehicle(50.0, 0.01, 1e300, 1e-300), ..table(5, LISTING) };
-    for solution in [Solution::ShallowGlide, Solution::Loh, Solution::SteepGlide] {
-        gone(solution, case, 0.01, 5000.0);
-    }
+    // C_L/C_D beyond all numbers: no speed, and no angle to divide by it.
+    let lift = Case { vehicle: vehicle(50.0, 0.01, 1e9, 1e-300), ..table(5, LISTING) };
+    let prediction = theory(Solution::ShallowGlide, lift).prediction(&at(&lift, 0.01, 5000.0));
+    assert_eq!(prediction, Err(End::Overflow));
     // Loh's g₀r₀/V² at rest, at entry 1/0 times 0.
     let loh = table(4, LISTING);
     let mut entry = fly(loh).initial();
