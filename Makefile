@@ -3,7 +3,7 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 
-.PHONY: help run build test check openapi validation
+.PHONY: help run build test check openapi validation theory
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -34,6 +34,9 @@ openapi: ## Write openapi/openapi.json anew
 
 validation: ## Print how the results compare with published ones
 	cargo run --quiet --release --locked --package reentry-tests --example validation
+
+theory: ## Print how near the analytic theories come to the simulation
+	cargo run --quiet --locked --package reentry-tests --example theory
 
 $(VENV)/ready: tests/live/requirements.txt
 	python3 -m venv --clear $(VENV)

@@ -7,11 +7,13 @@ pub(crate) mod requests;
 
 mod broken_json;
 mod cross_field;
+mod extras;
 mod faults;
 mod problems;
 mod protocol;
 mod ranges;
 
+mod analytic;
 mod convert;
 mod output;
 mod sidereal_time;

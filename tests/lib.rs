@@ -2,3 +2,4 @@
 
 pub mod cases;
 pub mod service;
+pub mod theory;

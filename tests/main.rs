@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on has failed")]
 
+mod analytic;
 mod check;
 mod conversions;
 mod flights;
@@ -13,3 +14,4 @@ mod pitfalls;
 mod properties;
 mod reference;
 mod tidy;
+mod verification;

@@ -38,13 +38,20 @@ fn shown(path: &str) -> Vec<(String, Value)> {
 
 /// The same, and requests with every field.
 fn good_requests(path: &str) -> Vec<(String, Value)> {
-    let every_field = if path == "/simulate" { flight } else { conversion };
+    let every_field = |kind: &str| match path {
+        "/simulate" => flight(kind),
+        "/analytic" => with(&flight(kind), "/solution", "loh"),
+        _ => conversion(kind),
+    };
     let complete = KINDS.map(|kind| (format!("a complete {kind}"), every_field(kind)));
     shown(path).into_iter().chain(complete).collect()
 }
 
-const ENDPOINTS: [(&str, &str, &str); 2] =
-    [("/simulate", "SimulateRequest", "SimulateResponse"), ("/convert", "ConvertRequest", "ConvertResponse")];
+const ENDPOINTS: [(&str, &str, &str); 3] = [
+    ("/simulate", "SimulateRequest", "SimulateResponse"),
+    ("/analytic", "AnalyticRequest", "AnalyticResponse"),
+    ("/convert", "ConvertRequest", "ConvertResponse"),
+];
 
 #[test]
 fn the_committed_document_is_that_of_the_service() {
@@ -62,7 +69,8 @@ fn good_requests_and_every_example_file_are_valid() {
         }
     }
     let count = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../openapi/examples")).unwrap().count();
-    assert_eq!(shown("/simulate").len() + shown("/convert").len(), count + 21, "an example is not in the document");
+    let shown: usize = ENDPOINTS.iter().map(|(path, ..)| shown(path).len()).sum();
+    assert_eq!(shown, count + 21, "an example is not in the document");
 }
 
 #[test]
@@ -81,7 +89,7 @@ fn every_way_of_output_and_every_optional_field_left_out_is_valid() {
 /// Sorts what the schema accepts and the service refuses, or the other way round.
 struct Agreement {
     service: Service,
-    schemas: [(&'static str, Validator); 2],
+    schemas: [(&'static str, Validator); 3],
     count: usize,
     differences: BTreeSet<String>,
 }
@@ -346,7 +354,7 @@ fn every_operation_and_response_has_a_description() {
         }
     }
     let given: Vec<_> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
-    for path in ["/simulate", "/convert", "/health/live", "/health/ready"] {
+    for path in ["/simulate", "/analytic", "/convert", "/health/live", "/health/ready"] {
         assert!(given.contains(&path), "{path}");
     }
 }

@@ -12,7 +12,7 @@ const CORE: [&[&str]; 9] = [
     &["motion"],
     &["scenario"],
     &["trajectory"],
-    &["sensitivity", "simulate"],
+    &["analytic", "sensitivity", "simulate"],
     &["verification"],
 ];
 

@@ -10,7 +10,7 @@ use super::requests::{KINDS, capsule, conversion, flight, state, with, with_all,
 async fn every_missing_field_is_named() {
     let steady = Steady::new().await;
     let fields: Vec<_> = fields().into_iter().filter(|field| field.need == Need::Required).collect();
-    assert_eq!(fields.len(), 75);
+    assert_eq!(fields.len(), 76);
     for field in fields {
         let request = without(&field.request, &field.pointer);
         steady.refused_at(field.path, &request, &[(&field.pointer, "is required")]).await;
@@ -127,6 +127,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/planet/model" => {
                     "must be one of earth_wgs84, earth_jameson_listing, earth_jameson_text, custom, got "
                 }
+                "/solution" => "must be one of shallow_glide, loh, steep_glide, steep_ballistic, medium_glide, got ",
                 "/planet/shape" => "must be one of sphere, ellipsoid, got ",
                 "/atmosphere/type" => "must be one of exponential, got ",
                 "/vehicle/aerodynamics/type" => "must be one of constant, got ",

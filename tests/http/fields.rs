@@ -171,6 +171,7 @@ pub(crate) fn fields() -> Vec<Field> {
     add("/simulate", &flight("ecef"), "", &CASE);
     add("/simulate", &flight("ecef"), "", &SOLVER);
     add("/convert", &conversion("ecef"), "", &SHARED);
+    add("/analytic", &with(&flight("ecef"), "/solution", "loh"), "", &[("/solution", Required, Name)]);
     let named = |request| with(&request, "/planet", json!({"model": "earth_jameson_text"}));
     add("/simulate", &named(flight("eci")), "", &[("/planet/model", Optional, Name)]);
     add("/convert", &named(conversion("eci")), "", &[("/planet/model", Optional, Name)]);

@@ -77,6 +77,7 @@ async fn a_wrong_method_is_told_the_right_ones() {
     for (path, right) in [
         ("/simulate", "POST"),
         ("/convert", "POST"),
+        ("/analytic", "POST"),
         ("/health/live", "GET,HEAD"),
         ("/health/ready", "GET,HEAD"),
         ("/openapi.json", "GET,HEAD"),

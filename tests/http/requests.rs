@@ -27,6 +27,8 @@ pub(crate) fn flight(kind: &str) -> Value {
         "name": "a second of flight",
         "angle_unit": "rad",
         "echo": false,
+        "sensitivities": false,
+        "verify": false,
         "epoch": "2026-11-22T12:00:00Z",
         "planet": planet(),
         "atmosphere": {"type": "exponential", "surface_density": 1.2, "scale_height": 7000},

@@ -81,6 +81,8 @@ async fn defaults_are_those_of_the_contract() {
     let defaults = json!({
         "angle_unit": "rad",
         "echo": true,
+        "sensitivities": false,
+        "verify": false,
         "planet": {"model": "earth_wgs84", "shape": "ellipsoid"},
         "atmosphere": {"type": "exponential", "surface_density": 1.54793, "scale_height": 6935.0},
         "control": {"bank_angle": 0.0},

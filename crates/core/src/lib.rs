@@ -57,6 +57,8 @@ pub mod simulate;
 pub mod trajectory;
 pub mod verification;
 
+pub mod analytic;
+
 pub mod motion;
 
 pub mod atmosphere;

@@ -11,6 +11,7 @@ use serde_json::Value;
 
 use crate::error::ApiError;
 use crate::format::Format;
+use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
 use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
 use crate::wire::sensitivities::Sensitivities;
@@ -28,7 +29,7 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let flight = fly(&job.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();
     let points = rows(&job, &flight, row_limit)?;
-    let extras = if format == Format::Json { extras(&job, &flight, interrupt)? } else { Extras::default() };
+    let extras = extras(&job, &flight, format, interrupt)?;
     let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
     Ok(match (format, &response.trajectory) {
         (Format::Csv, Some(trajectory)) => trajectory.to_csv()?,
@@ -36,9 +37,12 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     })
 }
 
-/// What a job asks for beyond the flight.
-fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
+/// What a job asks for beyond the flight; CSV has no place for it.
+fn extras(job: &Job, flight: &Trajectory, format: Format, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
     let request = &job.request;
+    if format != Format::Json {
+        return Ok(Extras::default());
+    }
     let sensitivities =
         request.sensitivities.then(|| Sensitivities::from_core(&sensitivities(flight), request.angle_unit));
     let verification = request.verify.then(|| verify(&job.scenario, flight, interrupt)).transpose()?;
@@ -62,4 +66,20 @@ fn rows(job: &Job, flight: &Trajectory, limit: usize) -> Result<Option<Vec<Fligh
 /// When the state is not sound.
 pub fn convert(tree: Value) -> Result<Vec<u8>, ApiError> {
     Ok(serde_json::to_vec(&ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?)?)
+}
+
+/// Sets a theory beside a flight; `interrupt` ends the flight early.
+///
+/// # Errors
+/// When the case is not sound, the theory does not apply, and as [`simulate`] otherwise.
+pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+    let analytic = AnalyticJob::try_from_tree(tree).map_err(ApiError::Invalid)?;
+    let flight = fly(&analytic.job.scenario, interrupt)?;
+    let points = rows(&analytic.job, &flight, row_limit)?.unwrap_or_default();
+    let extras = extras(&analytic.job, &flight, format, interrupt)?;
+    let response = AnalyticResponse::new(analytic, &flight, &points, extras);
+    Ok(match format {
+        Format::Csv => response.to_csv()?,
+        Format::Json => serde_json::to_vec(&response)?,
+    })
 }

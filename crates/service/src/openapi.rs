@@ -59,7 +59,11 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         }
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
-        for (path, formats) in [("/simulate", json!(["json", "csv"])), ("/convert", json!(["json"]))] {
+        for (path, formats) in [
+            ("/simulate", json!(["json", "csv"])),
+            ("/analytic", json!(["json", "csv"])),
+            ("/convert", json!(["json"])),
+        ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
                 add_failures(operation);
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
@@ -149,7 +153,9 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("velocity/items", if name == "Ecef" { bounded(-1e6, 1e6) } else { json!({}) }),
         ],
         "Output" => vec![("times/items", json!({"minimum": 0})), ("trajectory", json!({"enum": [false]}))],
-        "SimulateRequest" | "ConvertRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN}))],
+        "SimulateRequest" | "ConvertRequest" | "AnalyticRequest" => {
+            vec![("epoch", json!({"pattern": RFC3339_PATTERN}))]
+        }
         _ => Vec::new(),
     };
     for (path, refinement) in refinements {
@@ -182,7 +188,11 @@ fn add_examples(paths: &mut Map<String, Value>) {
     let convert = json!({
         "impulse": {"summary": "The burnout state of IMPULSE", "value": example(include_str!("../../../openapi/examples/impulse_state.json"))},
     });
-    for (path, examples) in [("/simulate", simulate), ("/convert", convert)] {
+    let analytic = json!({
+        "steep_ballistic": {"summary": "A small vehicle falls steeply from 400 km: the straight line of the ballistic theory",
+            "value": example(include_str!("../../../openapi/examples/steep_ballistic.json"))},
+    });
+    for (path, examples) in [("/simulate", simulate), ("/convert", convert), ("/analytic", analytic)] {
         paths[path]["post"]["requestBody"]["content"]["application/json"]["examples"] = examples;
     }
 }

@@ -13,7 +13,7 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use crate::endpoints::{convert, docs, health, home, simulate};
+use crate::endpoints::{analytic, convert, docs, health, home, simulate};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, observe};
 use crate::openapi::{self, Document};
@@ -24,6 +24,7 @@ fn routes() -> OpenApiRouter<AppState> {
     OpenApiRouter::with_openapi(Document::openapi())
         .routes(routes!(simulate::simulate))
         .routes(routes!(convert::convert))
+        .routes(routes!(analytic::analytic))
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
 }

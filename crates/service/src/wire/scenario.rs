@@ -158,7 +158,7 @@ impl Job {
 }
 
 impl SimulateRequest {
-    fn read(object: &mut Object) -> Option<Self> {
+    pub(super) fn read(object: &mut Object) -> Option<Self> {
         let name = object.optional_string("name");
         let angle_unit = object.angle_unit();
         let echo = object.boolean_or("echo", false);
@@ -197,7 +197,7 @@ impl SimulateRequest {
         })
     }
 
-    fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
+    pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
         let planet = self.planet.core;
         let stop = scenario::Stop { altitude: self.stop.altitude, time: self.stop.time };
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &planet);
@@ -278,7 +278,7 @@ impl Output {
     }
 
     /// The instants that are wanted, with the pointer to the field that asks for them.
-    fn sampling(&self) -> Option<(Sampling, &'static str)> {
+    pub(super) fn sampling(&self) -> Option<(Sampling, &'static str)> {
         let per_step = self.samples_per_step.map(|rows| (Sampling::PerStep(rows), "/output/samples_per_step"));
         let interval = || self.interval.map(|interval| (Sampling::Interval(interval), "/output/interval"));
         let count = || self.count.map(|count| (Sampling::Count(count), "/output/count"));

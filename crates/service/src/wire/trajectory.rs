@@ -11,7 +11,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
 use super::planet::{PlanetModel, Shape};
-use super::scenario::{Formulation, Job};
+use super::scenario::{Formulation, Job, SimulateRequest};
 use super::sensitivities::Sensitivities;
 use super::verification::Verification;
 
@@ -306,10 +306,7 @@ impl SimulateResponse {
         let unit = request.angle_unit;
         let row = |point| Row { point, unit };
         let statistics = flight.statistics();
-        let mut warnings: Vec<_> = flight.warnings().iter().copied().map(Warning::of_flight).collect();
-        if request.epoch.is_some() && request.initial_state.is_inertial() {
-            warnings.push(Warning::frame_of_date());
-        }
+        let warnings = Warning::of(&request, flight);
         Self {
             name: request.name,
             angle_unit: unit,
@@ -358,6 +355,21 @@ impl From<&CorePeaks> for Peaks {
 impl Warning {
     fn new(code: &'static str, detail: &str) -> Self {
         Self { code, detail: detail.to_owned(), time: None }
+    }
+
+    /// What there is to know of a flight and of the request for it.
+    pub fn of(request: &SimulateRequest, flight: &Trajectory) -> Vec<Self> {
+        let mut warnings: Vec<_> = flight.warnings().iter().copied().map(Self::of_flight).collect();
+        if request.epoch.is_some() && request.initial_state.is_inertial() {
+            warnings.push(Self::frame_of_date());
+        }
+        warnings
+    }
+
+    /// The theories know no bank.
+    pub fn bank_left_out() -> Self {
+        let detail = "the theory knows no bank: it takes the whole lift as upward, while the simulated flight banks";
+        Self::new("bank_angle_left_out", detail)
     }
 
     fn of_flight(warning: trajectory::Warning) -> Self {

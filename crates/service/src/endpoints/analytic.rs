@@ -1,0 +1,43 @@
+//! `POST /analytic`: sets a theory beside a flight.
+
+use std::sync::atomic::AtomicBool;
+
+use axum::extract::State;
+use axum::http::header;
+use axum::http::request::Parts;
+use axum::response::{IntoResponse, Response};
+
+use crate::answer;
+use crate::error::ApiError;
+use crate::extract::Payload;
+use crate::format::Format;
+use crate::state::AppState;
+use crate::wire::analytic::{AnalyticRequest, AnalyticResponse};
+use crate::wire::json;
+
+/// Sets a closed-form theory of entry beside the simulated flight.
+///
+/// Flies the case as `/simulate` does and predicts speed, flight-path angle and drag at its rows, in time order, by the theory that
+/// `solution` names. The theories know a planet that does not rotate and a vehicle that does not bank. A number that the theory
+/// does not give is null. `text/csv` has a line a row, time, altitude, then `simulated_` and `predicted_` of each quantity; null is
+/// an empty cell.
+#[utoipa::path(
+    post,
+    path = "/analytic",
+    tag = "reentry",
+    params(("format" = Option<String>, Query, description = "`json` or `csv`; wins over `Accept`.")),
+    request_body = AnalyticRequest,
+    responses(
+        (status = 200, description = "The theory beside the flight.", content(
+            (AnalyticResponse = "application/json"),
+            (String = "text/csv"),
+        )),
+    ),
+)]
+pub async fn analytic(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
+    let format = Format::negotiate(&parts, &[Format::Json, Format::Csv])?;
+    let row_limit = app.config.row_limit;
+    let run = move |interrupt: &AtomicBool| answer::analytic(json::parse(&body)?, format, row_limit, interrupt);
+    let body = app.compute.run(run).await?;
+    Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
+}

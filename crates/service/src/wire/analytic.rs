@@ -1,0 +1,340 @@
+//! The request and the answer of `/analytic`: a theory beside a flight, row by row.
+
+use reentry::analytic::{self, Comparison, Fault as TheoryFault, Prediction, Theory};
+use reentry::trajectory::{FlightPoint, Trajectory};
+use serde::Serialize;
+use serde_json::Value;
+use utoipa::openapi::schema::{ObjectBuilder, RefBuilder};
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
+
+use super::AngleUnit;
+use super::reader::{self, Fault};
+use super::scenario::{Job, SimulateRequest};
+use super::sensitivities::Sensitivities;
+use super::state::State;
+use super::trajectory::{Extras, Warning};
+use super::verification::Verification;
+
+/// The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Solution {
+    /// Equations 77 to 79: V² = g₀r₀/(βr₀ηk + 1), γ = -2g₀/(kβV²); up to |γ| = 5°. Needs lift.
+    ShallowGlide,
+    /// Equation 80: γ of a descent to second order, with the simulated speed. Needs lift.
+    Loh,
+    /// Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Needs lift and a descent.
+    SteepGlide,
+    /// Equations 84 to 87: γ = `γ_e`, and V of a straight line. Needs a descent, without lift.
+    SteepBallistic,
+    /// Equations 88 to 90: Wang and Ting's, from more than circular speed. Needs lift and a descent.
+    MediumGlide,
+}
+
+impl Solution {
+    const NAMES: [(&'static str, Self); 5] = [
+        ("shallow_glide", Self::ShallowGlide),
+        ("loh", Self::Loh),
+        ("steep_glide", Self::SteepGlide),
+        ("steep_ballistic", Self::SteepBallistic),
+        ("medium_glide", Self::MediumGlide),
+    ];
+
+    fn to_core(self) -> analytic::Solution {
+        match self {
+            Self::ShallowGlide => analytic::Solution::ShallowGlide,
+            Self::Loh => analytic::Solution::Loh,
+            Self::SteepGlide => analytic::Solution::SteepGlide,
+            Self::SteepBallistic => analytic::Solution::SteepBallistic,
+            Self::MediumGlide => analytic::Solution::MediumGlide,
+        }
+    }
+}
+
+/// A case to simulate, as for `/simulate`, and the theory to set beside it.
+#[derive(Clone, Debug)]
+pub struct AnalyticRequest {
+    /// The theory.
+    pub solution: Solution,
+    /// The case.
+    pub case: SimulateRequest,
+}
+
+/// The fields of [`SimulateRequest`], whatever they are, and `solution`.
+impl PartialSchema for AnalyticRequest {
+    fn schema() -> RefOr<Schema> {
+        let RefOr::T(Schema::Object(case)) = SimulateRequest::schema() else { return SimulateRequest::schema() };
+        let description = "A case to simulate, as for `/simulate`, and the theory to set beside it. \
+                           `output` cannot be `{\"trajectory\": false}`: the predictions are made at the rows.";
+        let solution = RefBuilder::new()
+            .ref_location_from_schema_name(Solution::name())
+            .description(Some("The theory to set beside the simulated flight."));
+        let builder = ObjectBuilder::from(case).description(Some(description));
+        builder.property("solution", solution).required("solution").into()
+    }
+}
+
+impl ToSchema for AnalyticRequest {
+    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+        schemas.push((Solution::name().into(), Solution::schema()));
+        SimulateRequest::schemas(schemas);
+    }
+}
+
+/// A sound request: a case that can be flown, and a theory that applies to it.
+#[derive(Debug)]
+pub struct AnalyticJob {
+    /// What to fly.
+    pub job: Job,
+    /// The theory that was asked for.
+    pub solution: Solution,
+    /// The theory for the case.
+    pub theory: Theory,
+}
+
+impl AnalyticJob {
+    /// Parses and checks a request.
+    ///
+    /// # Errors
+    /// With every fault of its structure or, where that is sound, every fault across its fields.
+    pub fn try_from_tree(mut tree: Value) -> Result<Self, Vec<Fault>> {
+        let AnalyticRequest { solution, case: request } = reader::read(&mut tree, |object| {
+            let solution = object.choice("solution", &Solution::NAMES);
+            let case = SimulateRequest::read(object);
+            Some(AnalyticRequest { solution: solution?, case: case? })
+        })?;
+        let sampling = request.output.sampling();
+        let rowless = sampling.is_none().then(|| {
+            Fault::new("/output/trajectory", "must not be false: the predictions are made at the rows of the flight")
+        });
+        let (scenario, theory) = match request.try_into_scenario() {
+            Ok(scenario) => match Theory::new(solution.to_core(), &scenario) {
+                Ok(theory) => (Ok(scenario), Ok(theory)),
+                Err(error) => (Ok(scenario), Err(error.0)),
+            },
+            Err(faults) => {
+                let (vehicle, atmosphere) = (request.vehicle.to_core(), request.atmosphere.to_core());
+                (Err(faults), Err(solution.to_core().vehicle_faults(&vehicle, &atmosphere)))
+            }
+        };
+        match (scenario, theory, rowless) {
+            (Ok(scenario), Ok(theory), None) => {
+                let echo = request.echo.then_some(tree);
+                Ok(Self { job: Job { scenario, sampling, request, echo }, solution, theory })
+            }
+            (scenario, theory, rowless) => {
+                let theory = theory.err().into_iter().flatten().map(|fault| fault_of(&fault, &request));
+                Err(scenario.err().into_iter().flatten().chain(theory).chain(rowless).collect())
+            }
+        }
+    }
+}
+
+/// What keeps a theory from applying, at the field of the request that it concerns.
+fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
+    let has_angle = matches!(request.initial_state, State::PlanetRelative(_) | State::Geodetic(_));
+    let pointer = match fault {
+        TheoryFault::NoLift | TheoryFault::Lift { .. } => "/vehicle/aerodynamics/lift_coefficient",
+        TheoryFault::NoDrag => "/vehicle/aerodynamics/drag_coefficient",
+        TheoryFault::NoArea => "/vehicle/reference_area",
+        TheoryFault::NoAir => "/atmosphere/surface_density",
+        TheoryFault::NoDescent { .. } if has_angle => "/initial_state/flight_path_angle",
+        TheoryFault::NoDescent { .. } | TheoryFault::NoAirAtEntry => "/initial_state",
+    };
+    let detail = match fault {
+        TheoryFault::NoDescent { flight_path_angle } => {
+            format!("{fault}, got {}", request.angle_unit.from_radians(*flight_path_angle))
+        }
+        _ => fault.to_string(),
+    };
+    Fault::new(pointer, detail)
+}
+
+/// The simulated flight: one array a quantity, all of one length, time strictly increasing.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct Simulated {
+    /// Since the start, s.
+    pub time: Vec<f64>,
+    /// Height above the planet's shape along the radius vector, m.
+    pub altitude: Vec<f64>,
+    /// Relative to the rotating planet, m/s.
+    pub speed: Vec<f64>,
+    /// Of the relative velocity above the plane normal to the radius.
+    pub flight_path_angle: Vec<f64>,
+    /// D/m, m/s²: the part of the deceleration that is drag's.
+    pub drag_deceleration: Vec<f64>,
+}
+
+/// What the theory predicts at the same instants and altitudes; null where it gives no number.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct Predicted {
+    /// Those of the flight, s.
+    pub time: Vec<f64>,
+    /// Those of the flight, m.
+    pub altitude: Vec<f64>,
+    /// m/s; null with `loh`, which takes the simulated speed.
+    pub speed: Vec<Option<f64>>,
+    /// Above the plane normal to the radius.
+    pub flight_path_angle: Vec<Option<f64>>,
+    /// D/m, m/s², which the theories take for the whole deceleration; null with `loh`.
+    pub drag_deceleration: Vec<Option<f64>>,
+}
+
+/// Predicted minus simulated, at the same rows; null where the theory gives no number.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct Differences {
+    /// m/s.
+    pub speed: Vec<Option<f64>>,
+    /// In the unit of angles.
+    pub flight_path_angle: Vec<Option<f64>>,
+    /// m/s².
+    pub drag_deceleration: Vec<Option<f64>>,
+}
+
+/// The stretch of the flight, in time order, outside which the theory gives no number.
+///
+/// The steep and medium solutions end where they first give none; `shallow_glide` and `loh` where they last give one, with gaps
+/// before, maybe.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct Valid {
+    /// Where it begins, m, along the radius vector; null where the theory never gives a number.
+    #[schema(required = true)]
+    pub from_altitude: Option<f64>,
+    /// Where it ends, m, located between the rows; null where the theory never gives a number.
+    #[schema(required = true)]
+    pub to_altitude: Option<f64>,
+    /// Why it ends, or never begins.
+    pub ends_because: String,
+}
+
+/// A theory beside a flight.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct AnalyticResponse {
+    /// As in the request.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub name: Option<String>,
+    /// As in the request.
+    pub solution: Solution,
+    /// The unit of every angle.
+    pub angle_unit: AngleUnit,
+    /// Of the service.
+    pub version: &'static str,
+    /// The flight, at the rows of `output`.
+    pub simulated: Simulated,
+    /// The theory.
+    pub predicted: Predicted,
+    /// Predicted minus simulated.
+    pub differences: Differences,
+    /// Where the theory holds.
+    pub valid: Valid,
+    /// The derivatives of the simulated flight's end, with `sensitivities`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub sensitivities: Option<Sensitivities>,
+    /// How exact the simulated flight is, with `verify`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub verification: Option<Verification>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    /// The request with every default filled in, with `echo`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, value_type = Object)]
+    pub case: Option<Value>,
+}
+
+impl AnalyticResponse {
+    /// The answer to a job that was flown; `points` are the rows that it asks for.
+    pub fn new(job: AnalyticJob, flight: &Trajectory, points: &[FlightPoint], extras: Extras) -> Self {
+        let AnalyticJob { job: Job { request, echo, .. }, solution, theory } = job;
+        let unit = request.angle_unit;
+        let Comparison { predictions, validity } = theory.compare(flight, points);
+        let simulated = Simulated {
+            time: points.iter().map(|point| point.time).collect(),
+            altitude: points.iter().map(|point| point.loads.altitude).collect(),
+            speed: points.iter().map(|point| point.flight_path.speed).collect(),
+            flight_path_angle: points
+                .iter()
+                .map(|point| unit.from_radians(point.flight_path.flight_path_angle))
+                .collect(),
+            drag_deceleration: points.iter().map(|point| theory.drag_deceleration(point)).collect(),
+        };
+        let column = |value: fn(&Prediction) -> Option<f64>| predictions.iter().map(value).collect();
+        let angles: Vec<_> = column(|prediction| prediction.flight_path_angle);
+        let predicted = Predicted {
+            time: simulated.time.clone(),
+            altitude: simulated.altitude.clone(),
+            speed: column(|prediction| prediction.speed),
+            flight_path_angle: angles.into_iter().map(|angle| angle.map(|angle| unit.from_radians(angle))).collect(),
+            drag_deceleration: column(|prediction| prediction.drag_deceleration),
+        };
+        let mut warnings = Warning::of(&request, flight);
+        if request.control.bank_angle != 0.0 {
+            warnings.push(Warning::bank_left_out());
+        }
+        Self {
+            name: request.name,
+            solution,
+            angle_unit: unit,
+            version: env!("CARGO_PKG_VERSION"),
+            differences: Differences {
+                speed: differences(&predicted.speed, &simulated.speed),
+                flight_path_angle: differences(&predicted.flight_path_angle, &simulated.flight_path_angle),
+                drag_deceleration: differences(&predicted.drag_deceleration, &simulated.drag_deceleration),
+            },
+            simulated,
+            predicted,
+            valid: Valid {
+                from_altitude: validity.from_altitude,
+                to_altitude: validity.to_altitude,
+                ends_because: validity.end.to_string(),
+            },
+            sensitivities: extras.sensitivities,
+            verification: extras.verification,
+            warnings,
+            case: echo,
+        }
+    }
+
+    /// A header and a line a row: time, altitude, then what is simulated and what is predicted; no number is an empty cell.
+    ///
+    /// # Errors
+    /// Never: memory can always be written.
+    pub fn to_csv(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let Self { simulated, predicted, .. } = self;
+        let given = [
+            ("time", &simulated.time),
+            ("altitude", &simulated.altitude),
+            ("simulated_speed", &simulated.speed),
+            ("simulated_flight_path_angle", &simulated.flight_path_angle),
+            ("simulated_drag_deceleration", &simulated.drag_deceleration),
+        ];
+        let maybe = [
+            ("predicted_speed", &predicted.speed),
+            ("predicted_flight_path_angle", &predicted.flight_path_angle),
+            ("predicted_drag_deceleration", &predicted.drag_deceleration),
+        ];
+        let names: Vec<_> = given.iter().map(|(name, _)| *name).chain(maybe.iter().map(|(name, _)| *name)).collect();
+        let mut csv = names.join(",").into_bytes();
+        for row in 0..simulated.time.len() {
+            let cells = given.iter().map(|(_, column)| column.get(row).copied());
+            let cells = cells.chain(maybe.iter().map(|(_, column)| column.get(row).copied().flatten()));
+            for (index, cell) in cells.enumerate() {
+                csv.push(if index == 0 { b'\n' } else { b',' });
+                if let Some(number) = cell {
+                    serde_json::to_writer(&mut csv, &number)?;
+                }
+            }
+        }
+        csv.push(b'\n');
+        Ok(csv)
+    }
+}
+
+/// Predicted minus simulated.
+fn differences(predicted: &[Option<f64>], simulated: &[f64]) -> Vec<Option<f64>> {
+    let difference = |(predicted, simulated): (&Option<f64>, &f64)| predicted.map(|predicted| predicted - simulated);
+    predicted.iter().zip(simulated).map(difference).collect()
+}

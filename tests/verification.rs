@@ -1,0 +1,72 @@
+//! What `verification` says of a flight is true.
+
+use std::sync::atomic::AtomicBool;
+
+use proptest::prelude::*;
+use reentry::simulate::SimulationError;
+use reentry::verification::{Verification, verify};
+use reentry::{Case, Scenario};
+
+use crate::check::{near, relative};
+use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
+
+fn verified(case: Case) -> Verification {
+    verify(&Scenario::new(case).unwrap(), &fly(case), &AtomicBool::new(false)).unwrap()
+}
+
+#[test]
+fn the_distance_from_the_finer_flight_is_the_error() {
+    for case in [target_2(), spherical(target_2())] {
+        let exact = fly(with_tolerance(case, 1e-14));
+        for tolerance in [1e-5, 1e-7, 1e-9] {
+            let case = with_tolerance(case, tolerance);
+            let (flight, verification) = (fly(case), verified(case));
+            relative("the tolerance of the finer flight", verification.relative_tolerance, tolerance / 100.0, 1e-15);
+            // The finer flight has some hundredths of the error.
+            relative("distance", verification.distance, miss(&flight, &exact), 0.2);
+            let late = flight.end_time() - exact.end_time();
+            near("time", verification.time_difference, late, 0.2 * late.abs() + 1e-10);
+        }
+    }
+    relative(
+        "there is no finer tolerance",
+        verified(with_tolerance(target_2(), 1e-13)).relative_tolerance,
+        1e-14,
+        1e-15,
+    );
+}
+
+#[test]
+fn the_drift_of_the_energy_falls_with_the_tolerance() {
+    let mut before = f64::INFINITY;
+    for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
+        let Verification { energy_drift, drag_work, .. } = verified(with_tolerance(target_2(), tolerance));
+        // The work of 3 km/s and 120 km, but for the 130 m/s at the end: 4.5e6 + 1.2e6 J/kg.
+        relative("work of the drag", drag_work, 5.6e6, 0.02);
+        assert!(energy_drift < 0.1 * before, "{energy_drift:e} at {tolerance:e} after {before:e}");
+        before = energy_drift;
+    }
+    assert!(before < 1e-9 * 5.6e6, "{before:e}");
+}
+
+proptest! {
+    #![proptest_config(config(60))]
+
+    #[test]
+    fn energy_is_balanced_on_every_flight(case in random_entry()) {
+        for case in [case, in_vacuum(case), spherical(case)] {
+            let verification = match verify(&Scenario::new(case).unwrap(), &fly(case), &AtomicBool::new(false)) {
+                Err(SimulationError::Singularity { .. }) => continue,
+                verification => verification.unwrap(),
+            };
+            // The specific energy of an entry; the dense output, on which the work is summed, is exact to about 1e-7 of it at 1e-10.
+            prop_assert!(verification.energy_drift < 1e-6 * 6e7, "{verification:?}");
+        }
+    }
+}
+
+#[test]
+fn the_flag_ends_the_finer_flight_as_well() {
+    let interrupted = verify(&Scenario::new(target_2()).unwrap(), &fly(target_2()), &AtomicBool::new(true));
+    assert!(matches!(interrupted, Err(SimulationError::Interrupted { .. })));
+}
