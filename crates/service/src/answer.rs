@@ -1,0 +1,51 @@
+//! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
+
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use reentry::simulate::{SimulationError, simulate as fly};
+use reentry::trajectory::{FlightPoint, Trajectory};
+use serde_json::Value;
+
+use crate::error::ApiError;
+use crate::format::Format;
+use crate::wire::convert::ConvertResponse;
+use crate::wire::scenario::{Job, Wanted};
+use crate::wire::trajectory::SimulateResponse;
+
+/// Flies a case; `interrupt` ends the flight early.
+///
+/// # Errors
+/// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
+pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+    let wanted = if format == Format::Csv { Wanted::Rows } else { Wanted::Answer };
+    let job = Job::try_from_tree(tree, wanted).map_err(ApiError::Invalid)?;
+    let start = Instant::now();
+    let flight = fly(&job.scenario, interrupt)?;
+    let elapsed = start.elapsed().as_secs_f64();
+    let points = rows(&job, &flight, row_limit)?;
+    let response = SimulateResponse::new(job, &flight, points, elapsed);
+    Ok(match (format, &response.trajectory) {
+        (Format::Csv, Some(trajectory)) => trajectory.to_csv()?,
+        _ => serde_json::to_vec(&response)?,
+    })
+}
+
+/// The rows for which a job asks.
+fn rows(job: &Job, flight: &Trajectory, limit: usize) -> Result<Option<Vec<FlightPoint>>, ApiError> {
+    let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
+    let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
+    let points = flight.points(&instants);
+    match points.iter().find(|point| !point.is_finite()) {
+        Some(point) => Err(SimulationError::Overflow { time: point.time }.into()),
+        None => Ok(Some(points)),
+    }
+}
+
+/// Writes a state in every coordinate system.
+///
+/// # Errors
+/// When the state is not sound.
+pub fn convert(tree: Value) -> Result<Vec<u8>, ApiError> {
+    Ok(serde_json::to_vec(&ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?)?)
+}
