@@ -280,7 +280,7 @@ fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
 
 #[tokio::test]
 async fn a_job_is_given_up_at_its_deadline() {
-    let compute = Compute::new(1, 0, Duration::from_millis(20)).unwrap();
+    let compute = Compute::new(1, 0, 0, Duration::from_millis(20)).unwrap();
     let result = compute.run(endless).await;
     assert!(matches!(result, Err(ApiError::DeadlineExceeded { .. })), "{result:?}");
     free_again(|| async { compute.has_room() }).await;
@@ -289,7 +289,7 @@ async fn a_job_is_given_up_at_its_deadline() {
 
 #[tokio::test]
 async fn a_job_whose_client_goes_away_is_given_up() {
-    let compute = Arc::new(Compute::new(1, 0, Duration::from_mins(5)).unwrap());
+    let compute = Arc::new(Compute::new(1, 0, 0, Duration::from_mins(5)).unwrap());
     let client = {
         let compute = Arc::clone(&compute);
         tokio::spawn(async move { compute.run(endless).await })
