@@ -5,6 +5,7 @@
     reason = "the handlers' comments are the API's texts; openapi.rs lists the failures"
 )]
 
+pub mod batch;
 pub mod convert;
 pub mod docs;
 pub mod health;

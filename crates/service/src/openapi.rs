@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
 
 use crate::error::Problem;
+use crate::wire::batch::MOST_CASES;
 use crate::wire::epoch::RFC3339_PATTERN;
 
 /// The frame of the document; the router adds the paths.
@@ -59,13 +60,20 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         }
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
-        for (path, formats) in [("/simulate", json!(["json", "csv"])), ("/convert", json!(["json"]))] {
+        for (path, formats) in [
+            ("/simulate", json!(["json", "csv"])),
+            ("/simulate/batch", json!(["ndjson"])),
+            ("/convert", json!(["json"])),
+        ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
                 add_failures(operation);
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
             }
         }
         add_examples(paths);
+        let cases = &mut paths["/simulate/batch"]["post"]["requestBody"]["content"]["application/json"]["schema"];
+        cases["minItems"] = json!(1);
+        cases["maxItems"] = json!(MOST_CASES);
     }
     document
 }
@@ -182,7 +190,10 @@ fn add_examples(paths: &mut Map<String, Value>) {
     let convert = json!({
         "impulse": {"summary": "The burnout state of IMPULSE", "value": example(include_str!("../../../openapi/examples/impulse_state.json"))},
     });
-    for (path, examples) in [("/simulate", simulate), ("/convert", convert)] {
+    let batch = json!({
+        "list": {"summary": "Two cases", "value": [simulate["target_1"]["value"], simulate["impulse"]["value"]]},
+    });
+    for (path, examples) in [("/simulate", simulate), ("/simulate/batch", batch), ("/convert", convert)] {
         paths[path]["post"]["requestBody"]["content"]["application/json"]["examples"] = examples;
     }
 }

@@ -12,6 +12,7 @@ pub mod planet;
 pub mod state;
 pub mod vehicle;
 
+pub mod batch;
 pub mod convert;
 pub mod scenario;
 pub mod trajectory;
