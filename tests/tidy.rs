@@ -16,7 +16,7 @@ const CORE: [&[&str]; 8] = [
 ];
 
 /// The levels of the service.
-const SERVICE: [&[&str]; 8] = [
+const SERVICE: [&[&str]; 9] = [
     &["wire", "config", "middleware"],
     &["error", "telemetry"],
     &["compute", "format", "openapi"],
@@ -25,6 +25,7 @@ const SERVICE: [&[&str]; 8] = [
     &["endpoints"],
     &["router"],
     &["serve"],
+    &["cli"],
 ];
 
 fn root() -> PathBuf {
