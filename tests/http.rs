@@ -12,6 +12,7 @@ mod problems;
 mod protocol;
 mod ranges;
 
+mod batch;
 mod convert;
 mod output;
 mod sidereal_time;

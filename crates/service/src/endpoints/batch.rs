@@ -47,7 +47,7 @@ pub async fn simulate_batch(
         move |interrupt: &AtomicBool| answer::simulate(json::parse(&case)?, Format::Json, row_limit, interrupt)
     };
     let jobs: Vec<_> = cases.into_iter().map(fly).collect();
-    let count = jobs.len();
+    let mut left = jobs.len() - 1;
     let time = app.config.batch_deadline;
     let end = Instant::now() + time;
     let mut results = app.compute.run_batch(jobs, time)?;
@@ -56,13 +56,14 @@ pub async fn simulate_batch(
     if matches!(first, Err(ApiError::DeadlineExceeded { .. })) && Instant::now() >= end {
         return first.map(IntoResponse::into_response);
     }
-    let rest = stream::unfold((results, count - 1), |(mut results, left)| async move {
-        let line = match results.recv().await {
-            Some(result) => Ok(line(result)),
-            None if left > 0 => Err(io::Error::other("the batch ended before its last case")),
-            None => return None,
-        };
-        Some((line, (results, left.saturating_sub(1))))
+    let rest = stream::poll_fn(move |context| {
+        results.poll_recv(context).map(|result| match result {
+            Some(result) => {
+                left -= 1;
+                Some(Ok(line(result)))
+            }
+            None => (left > 0).then(|| Err(io::Error::other("the batch ended before its last case"))),
+        })
     });
     let lines = stream::once(async { Ok(line(first)) }).chain(rest);
     Ok(([(header::CONTENT_TYPE, format.media_type())], Body::from_stream(lines)).into_response())
