@@ -121,7 +121,7 @@ async fn the_lines_are_of_the_media_type_that_is_asked_for() {
 async fn a_batch_has_up_to_a_thousand_cases() {
     let service = Service::new();
     let quick = with(&flight("ecef"), "/output", json!({"trajectory": false}));
-    let named = |count: usize| Value::from_iter((0..count).map(|index| with(&quick, "/name", index.to_string())));
+    let named = |count: usize| -> Value { (0..count).map(|index| with(&quick, "/name", index.to_string())).collect() };
     let lines = fly(&service, &named(1000)).await;
     let names: Vec<_> = lines.iter().map(|line| line["name"].as_str().unwrap().to_owned()).collect();
     assert_eq!(names, (0..1000).map(|index| index.to_string()).collect::<Vec<_>>());

@@ -12,7 +12,8 @@ use std::time::Duration;
 
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
-use tokio::time::{Instant, timeout, timeout_at};
+use tokio::time::{Instant, timeout};
+use tracing::{Instrument, Span};
 
 use crate::config::processors;
 use crate::error::ApiError;
@@ -84,17 +85,17 @@ impl Compute {
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
         let place = Arc::clone(&self.batches).try_acquire_owned().map_err(|_| ApiError::Busy)?;
-        let end = Instant::now() + time;
+        let start = Instant::now();
         let compute = Arc::clone(self);
         let (results, receiver) = mpsc::channel(1);
-        tokio::spawn(async move {
+        let run_all = async move {
             let mut place = Some(place);
             for job in jobs {
-                let job =
-                    async { if Instant::now() < end { timeout_at(end, compute.share(job)).await.ok() } else { None } };
+                let left = time.saturating_sub(start.elapsed());
+                let result = async { if left.is_zero() { None } else { timeout(left, compute.share(job)).await.ok() } };
                 let result = tokio::select! {
                     () = results.closed() => return,
-                    result = job => result,
+                    result = result => result,
                 };
                 let result = result.unwrap_or_else(|| {
                     // Nothing more is computed: the place is for another, however slowly the rest is read.
@@ -105,7 +106,8 @@ impl Compute {
                     return;
                 }
             }
-        });
+        };
+        tokio::spawn(run_all.instrument(Span::current()));
         Ok(receiver)
     }
 

@@ -13,7 +13,7 @@ use serde_json::value::RawValue;
 
 use crate::cli::{Failure, Output, failure, tell};
 use crate::compute;
-use crate::error::ApiError;
+use crate::error::{ApiError, FieldError};
 use crate::format::Format;
 use crate::wire::json;
 
@@ -163,12 +163,11 @@ fn progress(count: usize, output: &Output) -> ProgressBar {
 /// A problem document for people: its title and detail, and a line a fault.
 fn told(place: &str, error: &ApiError) -> String {
     let problem = error.problem();
-    let mut text = format!("reentry: {place}: {}: {}\n", problem.title, problem.detail);
-    for fault in &problem.errors {
-        let separator = if fault.pointer.is_empty() { "" } else { ": " };
-        text += &format!("  {}{separator}{}\n", fault.pointer, fault.detail);
-    }
-    text
+    let fault = |FieldError { pointer, detail }: &FieldError| {
+        if pointer.is_empty() { format!("  {detail}\n") } else { format!("  {pointer}: {detail}\n") }
+    };
+    let faults: String = problem.errors.iter().map(fault).collect();
+    format!("reentry: {place}: {}: {}\n{faults}", problem.title, problem.detail)
 }
 
 /// The name of a case, if it has one, quoted.
