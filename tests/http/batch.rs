@@ -203,7 +203,8 @@ fn counted(count: &Arc<AtomicUsize>) -> Job {
 
 #[tokio::test]
 async fn batches_leave_a_worker_to_single_jobs() {
-    let compute = compute(2, 8, LONG);
+    // Nobody waits longer than this for a worker that never comes.
+    let compute = compute(2, 8, Duration::from_secs(20));
     let batch = || compute.run_batch(vec![endless_job(), endless_job()], LONG).unwrap();
     let mut batches = [batch(), batch(), batch(), batch()];
     for _ in 0..100 {
@@ -307,6 +308,8 @@ async fn after_the_time_of_a_batch_nothing_is_computed_any_more() {
     for _ in 0..3 {
         let late = batch.recv().await.unwrap();
         assert!(matches!(late, Err(ApiError::DeadlineExceeded { seconds: 1.0 })), "{late:?}");
+        // What is left to say takes no place.
+        assert!(compute.run_batch(Vec::<Job>::new(), LONG).is_ok());
     }
     assert!(batch.recv().await.is_none());
     assert_eq!(count.load(Ordering::SeqCst), 1);
