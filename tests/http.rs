@@ -14,6 +14,7 @@ mod protocol;
 mod ranges;
 
 mod analytic;
+mod batch;
 mod convert;
 mod output;
 mod sidereal_time;

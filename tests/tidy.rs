@@ -17,7 +17,7 @@ const CORE: [&[&str]; 9] = [
 ];
 
 /// The levels of the service.
-const SERVICE: [&[&str]; 8] = [
+const SERVICE: [&[&str]; 9] = [
     &["wire", "config", "middleware"],
     &["error", "telemetry"],
     &["compute", "format", "openapi"],
@@ -26,6 +26,7 @@ const SERVICE: [&[&str]; 8] = [
     &["endpoints"],
     &["router"],
     &["serve"],
+    &["cli"],
 ];
 
 fn root() -> PathBuf {
@@ -131,14 +132,27 @@ fn nothing_is_left_to_do_and_nothing_panics_on_purpose() {
     }
 }
 
+/// Whether `.dockerignore` keeps a path from the builder: the last of its lines that matches the path or a parent decides.
+fn is_ignored(lines: &str, path: &str) -> bool {
+    let matches = |pattern: &str| pattern == "*" || Path::new(path).starts_with(pattern);
+    let of_line = |line: &str| match line.strip_prefix('!') {
+        Some(pattern) => matches(pattern).then_some(false),
+        None => matches(line).then_some(true),
+    };
+    lines.lines().filter(|line| !line.starts_with('#')).filter_map(of_line).next_back().unwrap_or(false)
+}
+
 #[test]
-fn every_path_that_the_dockerfile_copies_exists() {
+fn every_path_that_the_dockerfile_copies_is_there() {
     let dockerfile = fs::read_to_string(root().join("Dockerfile")).unwrap();
+    let ignored = fs::read_to_string(root().join(".dockerignore")).unwrap();
+    assert!(is_ignored(&ignored, "target") && is_ignored(&ignored, "tests/live"), "too much is sent to the builder");
     let mut copied = 0;
     for line in dockerfile.lines().filter(|line| line.starts_with("COPY ") && !line.contains("--from=")) {
         let paths: Vec<_> = line.split_whitespace().skip(1).filter(|word| !word.starts_with("--")).collect();
         for path in &paths[..paths.len() - 1] {
             assert!(root().join(path).exists(), "{line}: {path} does not exist");
+            assert!(!is_ignored(&ignored, path), "{line}: .dockerignore excludes {path}");
             copied += 1;
         }
     }

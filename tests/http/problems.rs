@@ -233,7 +233,7 @@ async fn a_flight_longer_than_allowed_gets_its_problem() {
 }
 
 /// A flight that takes as long as it is let.
-fn orbiting() -> Value {
+pub(crate) fn orbiting() -> Value {
     let state = json!({"type": "ecef", "position": [8e6, 0, 0], "velocity": [0, 0, 7e3]});
     with_all(&flight("ecef"), [("/initial_state", state), ("/stop/time", json!(1e9))])
 }
@@ -263,7 +263,7 @@ async fn a_full_service_gets_its_problem_and_is_soon_free_again() {
 }
 
 /// Waits until a worker has seen that its job is over; for ever, if it never does.
-async fn free_again<F: Future<Output = bool>>(has_room: impl Fn() -> F) {
+pub(crate) async fn free_again<F: Future<Output = bool>>(has_room: impl Fn() -> F) {
     while !has_room().await {
         tokio::task::yield_now().await;
     }
@@ -271,7 +271,7 @@ async fn free_again<F: Future<Output = bool>>(has_room: impl Fn() -> F) {
 
 /// A job that goes on until nobody wants it any more.
 #[expect(clippy::unnecessary_wraps, reason = "a job may fail")]
-fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
+pub(crate) fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
     while !interrupt.load(Ordering::Relaxed) {
         std::thread::yield_now();
     }
@@ -280,7 +280,7 @@ fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
 
 #[tokio::test]
 async fn a_job_is_given_up_at_its_deadline() {
-    let compute = Compute::new(1, 0, Duration::from_millis(20)).unwrap();
+    let compute = Compute::new(1, 0, 0, Duration::from_millis(20)).unwrap();
     let result = compute.run(endless).await;
     assert!(matches!(result, Err(ApiError::DeadlineExceeded { .. })), "{result:?}");
     free_again(|| async { compute.has_room() }).await;
@@ -289,7 +289,7 @@ async fn a_job_is_given_up_at_its_deadline() {
 
 #[tokio::test]
 async fn a_job_whose_client_goes_away_is_given_up() {
-    let compute = Arc::new(Compute::new(1, 0, Duration::from_mins(5)).unwrap());
+    let compute = Arc::new(Compute::new(1, 0, 0, Duration::from_mins(5)).unwrap());
     let client = {
         let compute = Arc::clone(&compute);
         tokio::spawn(async move { compute.run(endless).await })

@@ -40,7 +40,7 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
 /// What a job asks for beyond the flight; CSV has no place for it.
 fn extras(job: &Job, flight: &Trajectory, format: Format, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
     let request = &job.request;
-    if format != Format::Json {
+    if format == Format::Csv {
         return Ok(Extras::default());
     }
     let sensitivities =
@@ -78,8 +78,5 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let points = rows(&analytic.job, &flight, row_limit)?.unwrap_or_default();
     let extras = extras(&analytic.job, &flight, format, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, extras);
-    Ok(match format {
-        Format::Csv => response.to_csv()?,
-        Format::Json => serde_json::to_vec(&response)?,
-    })
+    Ok(if format == Format::Csv { response.to_csv()? } else { serde_json::to_vec(&response)? })
 }

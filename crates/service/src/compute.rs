@@ -1,12 +1,21 @@
 //! The pool of blocking threads on which every job runs: bounded, with a deadline, and cancelled when nobody waits any more.
+//!
+//! Single jobs and batches share the workers but not the places. A batch has one job with the workers at a time, which waits its
+//! turn like any other, and all batches together leave one worker free, where there are two: a single job waits for the singles
+//! before it and, on a machine with one worker, for one case of a batch.
 
-use std::sync::Arc;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc::sync_channel};
+use std::thread;
 use std::time::Duration;
 
 use tokio::runtime::{Builder, Runtime};
-use tokio::sync::Semaphore;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
+use tokio::time::{Instant, timeout};
+use tracing::{Instrument, Span};
 
+use crate::config::processors;
 use crate::error::ApiError;
 
 /// A runtime of its own whose blocking threads compute; the threads that talk to clients never do.
@@ -14,22 +23,34 @@ use crate::error::ApiError;
 pub struct Compute {
     /// Some until dropped.
     pool: Option<Runtime>,
+    /// For single jobs, waiting or running.
     places: Arc<Semaphore>,
+    /// For batches under way.
+    batches: Arc<Semaphore>,
+    /// The workers that all batches together may have.
+    shared: Arc<Semaphore>,
     deadline: Duration,
 }
 
 impl Compute {
-    /// A pool of `workers` threads before which `queue` jobs may wait; each job, its waiting included, may take the deadline.
+    /// A pool of `workers` threads before which `queue` jobs may wait, beside `batches` batches; each job, its waiting included,
+    /// may take the deadline.
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub fn new(workers: usize, queue: usize, deadline: Duration) -> std::io::Result<Self> {
+    pub fn new(workers: usize, queue: usize, batches: usize, deadline: Duration) -> std::io::Result<Self> {
         let pool = Builder::new_multi_thread()
             .worker_threads(1)
             .max_blocking_threads(workers)
             .thread_name("reentry-compute")
             .build()?;
-        Ok(Self { pool: Some(pool), places: Arc::new(Semaphore::new(workers + queue)), deadline })
+        Ok(Self {
+            pool: Some(pool),
+            places: Arc::new(Semaphore::new(workers + queue)),
+            batches: Arc::new(Semaphore::new(batches)),
+            shared: Arc::new(Semaphore::new(workers.saturating_sub(1).max(1))),
+            deadline,
+        })
     }
 
     /// Runs a job, which is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
@@ -42,8 +63,70 @@ impl Compute {
         T: Send + 'static,
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
-        let pool = self.pool.as_ref().ok_or(ApiError::Internal)?;
         let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| ApiError::Busy)?;
+        self.work(place, job).await
+    }
+
+    /// Runs the jobs of a batch one after another and gives their results in order, those that the time does not suffice for
+    /// as [`ApiError::DeadlineExceeded`].
+    ///
+    /// Nothing is computed further ahead than one job before the result that is taken next. Where none is taken for as long as a
+    /// job may run, or the receiver is dropped, the batch ends: the channel then closes early.
+    ///
+    /// # Errors
+    /// [`ApiError::Busy`] when all places for batches are taken.
+    pub fn run_batch<T, F>(
+        self: &Arc<Self>,
+        jobs: Vec<F>,
+        time: Duration,
+    ) -> Result<mpsc::Receiver<Result<T, ApiError>>, ApiError>
+    where
+        T: Send + 'static,
+        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+    {
+        let place = Arc::clone(&self.batches).try_acquire_owned().map_err(|_| ApiError::Busy)?;
+        let start = Instant::now();
+        let compute = Arc::clone(self);
+        let (results, receiver) = mpsc::channel(1);
+        let run_all = async move {
+            let mut place = Some(place);
+            for job in jobs {
+                let left = time.saturating_sub(start.elapsed());
+                let result = async { if left.is_zero() { None } else { timeout(left, compute.share(job)).await.ok() } };
+                let result = tokio::select! {
+                    () = results.closed() => return,
+                    result = result => result,
+                };
+                let result = result.unwrap_or_else(|| {
+                    // Nothing more is computed: the place is for another, however slowly the rest is read.
+                    place = None;
+                    Err(ApiError::DeadlineExceeded { seconds: time.as_secs_f64() })
+                });
+                if !matches!(timeout(compute.deadline, results.send(result)).await, Ok(Ok(()))) {
+                    return;
+                }
+            }
+        };
+        tokio::spawn(run_all.instrument(Span::current()));
+        Ok(receiver)
+    }
+
+    /// Runs a job of a batch, when the other batches leave it a worker.
+    async fn share<T, F>(&self, job: F) -> Result<T, ApiError>
+    where
+        T: Send + 'static,
+        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+    {
+        let worker = Arc::clone(&self.shared).acquire_owned().await.map_err(|_| ApiError::Internal)?;
+        self.work(worker, job).await
+    }
+
+    async fn work<T, F>(&self, place: OwnedSemaphorePermit, job: F) -> Result<T, ApiError>
+    where
+        T: Send + 'static,
+        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+    {
+        let pool = self.pool.as_ref().ok_or(ApiError::Internal)?;
         let caller = Caller(Arc::new(AtomicBool::new(false)));
         let interrupt = Arc::clone(&caller.0);
         let handle = pool.spawn_blocking(move || {
@@ -51,7 +134,7 @@ impl Compute {
             let _place = place;
             if interrupt.load(Ordering::Relaxed) { None } else { Some(job(&interrupt)) }
         });
-        match tokio::time::timeout(self.deadline, handle).await {
+        match timeout(self.deadline, handle).await {
             Ok(Ok(Some(result))) => result,
             Ok(Ok(None)) => Err(ApiError::Internal),
             Ok(Err(panic)) => {
@@ -62,7 +145,7 @@ impl Compute {
         }
     }
 
-    /// Whether a job would find a place.
+    /// Whether a single job would find a place.
     pub fn has_room(&self) -> bool {
         self.places.available_permits() > 0
     }
@@ -84,3 +167,38 @@ impl Drop for Caller {
         self.0.store(true, Ordering::Relaxed);
     }
 }
+
+/// Works on the items on all processors, for a program that serves nobody else, and hands the results over in order until `take`
+/// has enough; the flag of what then still runs is raised.
+pub fn in_order<I: Sync, R: Send>(
+    items: &[I],
+    work: impl Fn(&I, &AtomicBool) -> R + Sync,
+    mut take: impl FnMut(usize, R) -> ControlFlow<()>,
+) {
+    let threads = processors().min(items.len());
+    let (work, interrupt) = (&work, &AtomicBool::new(false));
+    thread::scope(|scope| {
+        // Thread k has the items k, k + threads, …: what is ahead of the next result is bounded, and nothing is to be sorted.
+        let start = |first| {
+            let (results, taken) = sync_channel(RESULTS_AHEAD);
+            scope.spawn(move || {
+                let mine = items.iter().skip(first).step_by(threads);
+                // An error: nobody takes any more.
+                let _ = mine.map(|item| results.send(work(item, interrupt))).find(Result::is_err);
+            });
+            taken
+        };
+        let lanes: Vec<_> = (0..threads).map(start).collect();
+        for index in 0..items.len() {
+            // A thread that has panicked sends nothing; its panic goes on at the end of the scope.
+            let Ok(result) = lanes[index % threads].recv() else { break };
+            if take(index, result).is_break() {
+                break;
+            }
+        }
+        interrupt.store(true, Ordering::Relaxed);
+    });
+}
+
+/// Results that a thread of [`in_order`] may be ahead.
+const RESULTS_AHEAD: usize = 16;

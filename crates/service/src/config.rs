@@ -29,6 +29,18 @@ pub struct Config {
     #[arg(long, env = "REENTRY_BODY_LIMIT", default_value_t = 1 << 20)]
     pub body_limit: usize,
 
+    /// Batches that may be under way at once; one more is refused with 503
+    #[arg(long, env = "REENTRY_BATCHES", default_value_t = 16)]
+    pub batches: usize,
+
+    /// Seconds that a batch may take in all; 504 is then the answer of the cases that are left
+    #[arg(long, env = "REENTRY_BATCH_DEADLINE", default_value = "60", value_parser = seconds)]
+    pub batch_deadline: Duration,
+
+    /// Bytes that the body of a batch may have; a longer one is refused with 413
+    #[arg(long, env = "REENTRY_BATCH_BODY_LIMIT", default_value_t = 8 << 20)]
+    pub batch_body_limit: usize,
+
     /// Rows that a trajectory may have; more are refused with 422
     #[arg(long, env = "REENTRY_ROW_LIMIT", default_value_t = 100_000)]
     pub row_limit: usize,
@@ -59,7 +71,7 @@ impl Config {
     /// The number of threads that compute.
     pub fn workers(&self) -> usize {
         match self.workers {
-            0 => std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
+            0 => processors(),
             workers => workers,
         }
     }
@@ -74,12 +86,20 @@ impl Default for Config {
             queue: 64,
             deadline: Duration::from_secs(10),
             body_limit: 1 << 20,
+            batches: 16,
+            batch_deadline: Duration::from_mins(1),
+            batch_body_limit: 8 << 20,
             row_limit: 100_000,
             compress_above: 16_384,
             grace: Duration::from_secs(20),
             log_format: LogFormat::Text,
         }
     }
+}
+
+/// The number of processors.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
 /// A positive number of seconds.

@@ -6,6 +6,7 @@
 )]
 
 pub mod analytic;
+pub mod batch;
 pub mod convert;
 pub mod docs;
 pub mod health;

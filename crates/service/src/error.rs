@@ -84,29 +84,42 @@ pub enum ApiError {
 pub struct Problem {
     /// The kind of problem: a path that stays the same.
     #[serde(rename = "type")]
-    kind: &'static str,
+    pub kind: &'static str,
     /// The kind of problem, for people.
-    title: &'static str,
+    pub title: &'static str,
     /// The HTTP status.
-    status: u16,
+    pub status: u16,
     /// This problem, for people.
-    detail: String,
+    pub detail: String,
     /// The fields that are at fault.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
-    errors: Vec<FieldError>,
+    pub errors: Vec<FieldError>,
+}
+
+impl Problem {
+    /// The document as a text of one line.
+    pub fn to_json(&self) -> Vec<u8> {
+        serde_json::to_vec(self).unwrap_or_default()
+    }
 }
 
 /// What is wrong with one field.
 #[derive(Debug, Serialize, ToSchema)]
-struct FieldError {
+pub struct FieldError {
     /// The field, as a JSON pointer (RFC 6901).
-    pointer: String,
+    pub pointer: String,
     /// What is wrong, and what would be right.
-    detail: String,
+    pub detail: String,
 }
 
 impl ApiError {
+    /// The problem document.
+    pub fn problem(&self) -> Problem {
+        let (status, kind, title) = self.class();
+        Problem { kind, title, status: status.as_u16(), detail: self.to_string(), errors: self.fields() }
+    }
+
     /// The one table: status, type and title.
     fn class(&self) -> (StatusCode, &'static str, &'static str) {
         use SimulationError::{Interrupted, Overflow, Singularity, StepLimit, TooStiff};
@@ -164,9 +177,8 @@ impl ApiError {
 
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
-        let (status, kind, title) = self.class();
-        let problem = Problem { kind, title, status: status.as_u16(), detail: self.to_string(), errors: self.fields() };
-        let body = serde_json::to_vec(&problem).unwrap_or_default();
+        let (status, ..) = self.class();
+        let body = self.problem().to_json();
         let mut response = (status, [(header::CONTENT_TYPE, "application/problem+json")], body).into_response();
         if status == StatusCode::SERVICE_UNAVAILABLE {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static("1"));

@@ -3,16 +3,20 @@
 use axum::extract::Query;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
+use clap::ValueEnum;
 
 use crate::error::ApiError;
 
 /// A representation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// `application/json`.
+    /// The whole answer, application/json
     Json,
-    /// `text/csv`, the trajectory alone.
+    /// The trajectory alone as a table, text/csv
     Csv,
+    /// A line of JSON for each case of a batch, application/x-ndjson
+    #[value(skip)]
+    Ndjson,
 }
 
 impl Format {
@@ -21,6 +25,7 @@ impl Format {
         match self {
             Self::Json => "json",
             Self::Csv => "csv",
+            Self::Ndjson => "ndjson",
         }
     }
 
@@ -29,6 +34,7 @@ impl Format {
         match self {
             Self::Json => "application/json",
             Self::Csv => "text/csv; charset=utf-8; header=present",
+            Self::Ndjson => "application/x-ndjson",
         }
     }
 

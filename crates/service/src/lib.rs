@@ -1,8 +1,9 @@
-//! The `reentry` service: a translator between HTTP and the core.
+//! The `reentry` service: a translator between HTTP and the core, and the same without HTTP, on the command line.
 //!
-//! Read [`router`] first, then [`endpoints`]; [`wire`] holds the JSON, [`compute`] the threads.
+//! Read [`router`] first, then [`endpoints`]; [`wire`] holds the JSON, [`compute`] the threads, [`cli`] the commands.
 
 pub mod answer;
+pub mod cli;
 pub mod compute;
 pub mod config;
 pub mod endpoints;

@@ -1,43 +1,18 @@
 //! The program `reentry`.
 
-use std::io::Write;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::Parser;
+use reentry_service::cli::{Cli, Failure};
 use reentry_service::config::Config;
 use reentry_service::serve::{serve, stop_signal};
 use reentry_service::state::AppState;
-use reentry_service::{document, telemetry};
+use reentry_service::telemetry;
 use tokio::net::TcpListener;
 
-/// Flies vehicles back through the atmosphere.
-#[derive(Parser)]
-#[command(version, arg_required_else_help = true)]
-struct Cli {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// Run the web service until SIGTERM or SIGINT; every flag can be set by its environment variable as well
-    Serve(Config),
-    /// Print the OpenAPI document
-    Openapi,
-}
-
 fn main() -> ExitCode {
-    let result = match Cli::parse().command {
-        Command::Serve(config) => run(config),
-        Command::Openapi => writeln!(std::io::stdout(), "{:#}", document()),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("reentry: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    let result = Cli::parse().command.run(run);
+    result.as_ref().err().map_or(ExitCode::SUCCESS, Failure::end)
 }
 
 #[tokio::main]

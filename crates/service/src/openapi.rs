@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
 
 use crate::error::Problem;
+use crate::wire::batch::MOST_CASES;
 use crate::wire::epoch::RFC3339_PATTERN;
 
 /// The frame of the document; the router adds the paths.
@@ -62,6 +63,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         for (path, formats) in [
             ("/simulate", json!(["json", "csv"])),
             ("/analytic", json!(["json", "csv"])),
+            ("/simulate/batch", json!(["ndjson"])),
             ("/convert", json!(["json"])),
         ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
@@ -70,6 +72,9 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
             }
         }
         add_examples(paths);
+        let cases = &mut paths["/simulate/batch"]["post"]["requestBody"]["content"]["application/json"]["schema"];
+        cases["minItems"] = json!(1);
+        cases["maxItems"] = json!(MOST_CASES);
     }
     document
 }
@@ -192,7 +197,12 @@ fn add_examples(paths: &mut Map<String, Value>) {
         "steep_ballistic": {"summary": "A small vehicle falls steeply from 400 km: the straight line of the ballistic theory",
             "value": example(include_str!("../../../openapi/examples/steep_ballistic.json"))},
     });
-    for (path, examples) in [("/simulate", simulate), ("/convert", convert), ("/analytic", analytic)] {
+    let batch = json!({
+        "list": {"summary": "Two cases", "value": [simulate["target_1"]["value"], simulate["impulse"]["value"]]},
+    });
+    for (path, examples) in
+        [("/simulate", simulate), ("/simulate/batch", batch), ("/convert", convert), ("/analytic", analytic)]
+    {
         paths[path]["post"]["requestBody"]["content"]["application/json"]["examples"] = examples;
     }
 }

@@ -1,6 +1,6 @@
 //! Every route.
 
-use axum::extract::{DefaultBodyLimit, OriginalUri};
+use axum::extract::OriginalUri;
 use axum::http::{Method, header};
 use axum::routing::get;
 use axum::{Json, Router, middleware};
@@ -13,7 +13,7 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use crate::endpoints::{analytic, convert, docs, health, home, simulate};
+use crate::endpoints::{analytic, batch, convert, docs, health, home, simulate};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, observe};
 use crate::openapi::{self, Document};
@@ -23,6 +23,7 @@ use crate::state::AppState;
 fn routes() -> OpenApiRouter<AppState> {
     OpenApiRouter::with_openapi(Document::openapi())
         .routes(routes!(simulate::simulate))
+        .routes(routes!(batch::simulate_batch))
         .routes(routes!(convert::convert))
         .routes(routes!(analytic::analytic))
         .routes(routes!(health::live))
@@ -55,7 +56,6 @@ pub fn app(state: AppState) -> Router {
         .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
             ApiError::MethodNotAllowed(uri.path().to_owned())
         })
-        .layer(DefaultBodyLimit::max(state.config.body_limit))
         .layer(compression)
         .layer(cors)
         .layer(middleware::from_fn(observe))

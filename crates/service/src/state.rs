@@ -22,7 +22,7 @@ impl AppState {
     /// # Errors
     /// When the system gives no thread for the workers.
     pub fn new(config: Config) -> std::io::Result<Self> {
-        let compute = Compute::new(config.workers(), config.queue, config.deadline)?;
+        let compute = Compute::new(config.workers(), config.queue, config.batches, config.deadline)?;
         Ok(Self { config: Arc::new(config), compute: Arc::new(compute), draining: Arc::default() })
     }
 

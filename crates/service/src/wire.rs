@@ -13,6 +13,7 @@ pub mod state;
 pub mod vehicle;
 
 pub mod analytic;
+pub mod batch;
 pub mod convert;
 pub mod scenario;
 pub mod sensitivities;

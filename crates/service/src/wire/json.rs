@@ -3,6 +3,7 @@
 use std::fmt;
 
 use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_json::value::RawValue;
 use serde_json::{Map, Number, Value};
 
 /// The tree of a JSON text. A key that occurs twice in an object is an error, as is a number that no `f64` holds.
@@ -14,6 +15,15 @@ pub fn parse(text: &[u8]) -> Result<Value, serde_json::Error> {
     let value = Tree.deserialize(&mut deserializer)?;
     deserializer.end()?;
     Ok(value)
+}
+
+/// The texts of the elements of a JSON array, each to be parsed by itself; `None` of JSON that is no array.
+///
+/// # Errors
+/// With the line and column at which the text stops being JSON.
+pub fn elements(text: &[u8]) -> Result<Option<Vec<&RawValue>>, serde_json::Error> {
+    let whole: &RawValue = serde_json::from_slice(text)?;
+    if whole.get().starts_with('[') { serde_json::from_str(whole.get()).map(Some) } else { Ok(None) }
 }
 
 /// The beginning of a value, for a message.

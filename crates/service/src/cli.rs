@@ -1,0 +1,203 @@
+//! The command line: the commands, what they print, and the codes with which they end.
+
+pub mod cases;
+pub mod healthcheck;
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
+
+use crate::answer;
+use crate::cli::cases::{Cases, States};
+use crate::cli::healthcheck::Healthcheck;
+use crate::config::Config;
+use crate::router::document;
+
+/// Flies vehicles back through the atmosphere.
+#[derive(Debug, Parser)]
+#[command(name = "reentry", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What the program can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run the web service until SIGTERM or SIGINT; every flag can be set by its environment variable as well
+    Serve(Config),
+    /// Fly a case, or each of a list of cases: the JSON of POST /simulate
+    #[command(after_help = [SIMULATE_EXAMPLES, EXIT_CODES].concat())]
+    Simulate(Cases),
+    /// Set a closed-form theory beside a flight, or beside each of a list: the JSON of POST /analytic
+    #[command(after_help = [ANALYTIC_EXAMPLES, EXIT_CODES].concat())]
+    Analytic(Cases),
+    /// Write a state in every coordinate system, or each of a list of states: the JSON of POST /convert
+    #[command(after_help = [CONVERT_EXAMPLES, EXIT_CODES].concat())]
+    Convert(States),
+    /// Ask the service of this machine whether it runs, for containers that have no other program to ask with
+    Healthcheck(Healthcheck),
+    /// Print the OpenAPI document
+    Openapi,
+    /// Print what a shell needs to complete commands and flags
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  all went well
+  1  a case failed: it is not valid, or cannot be flown to its end; or the service cannot listen or does not answer
+  2  the command line is wrong
+  3  a file cannot be read or written
+";
+
+const SIMULATE_EXAMPLES: &str = r#"Examples:
+  reentry simulate case.json
+  reentry simulate case.json --format csv --output trajectory.csv
+  reentry simulate - < case.json | jq .final_state
+  reentry simulate cases.json > answers.ndjson
+  reentry simulate - --format csv <<'END'
+  {"vehicle": {"mass": 5500, "reference_area": 12, "aerodynamics": {"type": "constant", "drag_coefficient": 1.3}},
+   "initial_state": {"type": "planet_relative", "altitude": 120000, "longitude": 0, "geocentric_latitude": 0.2,
+     "speed": 7500, "flight_path_angle": -0.05, "heading": 0.5}}
+  END
+
+A list of cases, a JSON array, gives a line of JSON a case, in order. A case that fails has its problem document there and on
+standard error, and the others fly all the same. With --format csv a list gives one table, whose first column, case, counts from 0.
+
+"#;
+
+const ANALYTIC_EXAMPLES: &str = r#"Examples:
+  reentry analytic case.json --format csv
+  jq '.solution = "steep_ballistic"' case.json | reentry analytic - | jq .valid
+
+A case has a solution: shallow_glide, loh, steep_glide, steep_ballistic or medium_glide.
+
+"#;
+
+const CONVERT_EXAMPLES: &str = r#"Examples:
+  reentry convert state.json
+  echo '{"state": {"type": "ecef", "position": [7e6, 0, 0], "velocity": [0, 7e3, 0]}}' | reentry convert - | jq .geodetic
+
+"#;
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  reentry completions bash > ~/.local/share/bash-completion/completions/reentry
+  reentry completions zsh > ~/.zfunc/_reentry
+  reentry completions fish > ~/.config/fish/completions/reentry.fish
+";
+
+/// Why the program does not end with 0.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A case failed, which has been told.
+    #[error("a case failed")]
+    Case,
+    /// A file cannot be read or written.
+    #[error("cannot {act} {path}: {error}")]
+    File {
+        /// Read or write.
+        act: &'static str,
+        /// Which.
+        path: String,
+        /// Why.
+        error: io::Error,
+    },
+    /// The service cannot run, or does not answer.
+    #[error(transparent)]
+    Service(#[from] io::Error),
+}
+
+impl Failure {
+    /// Says on standard error why the program ends, and with which code.
+    pub fn end(&self) -> ExitCode {
+        match self {
+            Self::Case => {}
+            Self::File { .. } | Self::Service(_) => tell(&format!("reentry: {self}\n")),
+        }
+        ExitCode::from(match self {
+            Self::Case | Self::Service(_) => 1,
+            Self::File { .. } => 3,
+        })
+    }
+}
+
+impl Command {
+    /// Does what is asked, but for serving, which is given to `serve`.
+    ///
+    /// # Errors
+    /// With what is to be said, unless it has been, and the code with which to end.
+    pub fn run(self, serve: impl FnOnce(Config) -> io::Result<()>) -> Result<(), Failure> {
+        match self {
+            Self::Serve(config) => Ok(serve(config)?),
+            Self::Simulate(cases) => cases.run(answer::simulate),
+            Self::Analytic(cases) => cases.run(answer::analytic),
+            Self::Convert(states) => states.run(|tree, _, _, _| answer::convert(tree)),
+            Self::Healthcheck(healthcheck) => {
+                healthcheck.run()?;
+                Output::Standard.write(b"ok\n").map(drop)
+            }
+            Self::Openapi => Output::Standard.write(format!("{:#}\n", document()).as_bytes()).map(drop),
+            Self::Completions { shell } => {
+                let mut script = Vec::new();
+                clap_complete::generate(shell, &mut Cli::command(), "reentry", &mut script);
+                Output::Standard.write(&script).map(drop)
+            }
+        }
+    }
+}
+
+/// Where results go.
+#[derive(Debug)]
+enum Output {
+    Standard,
+    /// A file that is made when there is something to write: a failure leaves an older one as it is.
+    Path(PathBuf),
+    File(PathBuf, File),
+}
+
+impl Output {
+    fn new(path: Option<&Path>) -> Self {
+        path.map_or(Self::Standard, |path| Self::Path(path.to_owned()))
+    }
+
+    /// Writes, and says whether anybody reads on: a pipe that its reader has closed is no failure.
+    fn write(&mut self, bytes: &[u8]) -> Result<bool, Failure> {
+        if let Self::Path(path) = self {
+            let file = File::create(&*path).map_err(|error| failure("write", path, error))?;
+            *self = Self::File(std::mem::take(path), file);
+        }
+        match self {
+            Self::File(path, file) => {
+                file.write_all(bytes).map(|()| true).map_err(|error| failure("write", path, error))
+            }
+            Self::Standard | Self::Path(_) => {
+                let mut stdout = io::stdout().lock();
+                match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+                    Ok(()) => Ok(true),
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+                    Err(error) => Err(failure("write", Path::new("standard output"), error)),
+                }
+            }
+        }
+    }
+}
+
+fn failure(act: &'static str, path: &Path, error: io::Error) -> Failure {
+    Failure::File { act, path: path.display().to_string(), error }
+}
+
+/// Writes on standard error; where nobody reads that, nobody is to be told.
+fn tell(text: &str) {
+    let _ = io::stderr().write_all(text.as_bytes());
+}

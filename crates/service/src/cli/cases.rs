@@ -1,0 +1,234 @@
+//! `reentry simulate` and its kin: from a file with one case or many to the answers.
+
+use std::fs;
+use std::io::{self, IsTerminal, Read};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+use serde_json::value::RawValue;
+
+use crate::cli::{Failure, Output, failure, tell};
+use crate::compute;
+use crate::error::{ApiError, FieldError};
+use crate::format::Format;
+use crate::wire::json;
+
+/// A file with cases, and what is to become of them.
+#[derive(Args, Debug)]
+pub struct Cases {
+    #[command(flatten)]
+    states: States,
+
+    /// What is written
+    #[arg(long, short, value_enum, default_value_t = Format::Json)]
+    format: Format,
+
+    /// Rows that a trajectory may have, so that a slip of the pen does not fill the memory
+    #[arg(long, default_value_t = 1_000_000)]
+    row_limit: usize,
+}
+
+/// A file with JSON, and where the answer goes.
+#[derive(Args, Debug)]
+pub struct States {
+    /// The file with the JSON, one object or an array of them; - is standard input
+    file: PathBuf,
+
+    /// The file to write, in place of standard output
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+}
+
+impl Cases {
+    /// Answers every case.
+    ///
+    /// # Errors
+    /// When a case fails, or a file cannot be read or written.
+    pub fn run(&self, answer: impl Answer) -> Result<(), Failure> {
+        Run { place: self.states.place(), format: self.format, row_limit: self.row_limit, answer }.all(&self.states)
+    }
+}
+
+impl States {
+    /// Answers every state.
+    ///
+    /// # Errors
+    /// When a state is not valid, or a file cannot be read or written.
+    pub fn run(&self, answer: impl Answer) -> Result<(), Failure> {
+        Run { place: self.place(), format: Format::Json, row_limit: 0, answer }.all(self)
+    }
+
+    fn is_standard(&self) -> bool {
+        self.file == Path::new("-")
+    }
+
+    /// The name of the file, for people.
+    fn place(&self) -> String {
+        if self.is_standard() { "standard input".to_owned() } else { self.file.display().to_string() }
+    }
+
+    fn read(&self) -> Result<Vec<u8>, Failure> {
+        let mut text = Vec::new();
+        let read = if self.is_standard() {
+            io::stdin().lock().read_to_end(&mut text).map(|_| text)
+        } else {
+            fs::read(&self.file)
+        };
+        read.map_err(|error| failure("read", Path::new(&self.place()), error))
+    }
+}
+
+/// A function of [`crate::answer`].
+pub trait Answer: Fn(Value, Format, usize, &AtomicBool) -> Result<Vec<u8>, ApiError> + Sync {}
+
+impl<F: Fn(Value, Format, usize, &AtomicBool) -> Result<Vec<u8>, ApiError> + Sync> Answer for F {}
+
+struct Run<A> {
+    place: String,
+    format: Format,
+    row_limit: usize,
+    answer: A,
+}
+
+impl<A: Answer> Run<A> {
+    fn all(&self, states: &States) -> Result<(), Failure> {
+        let text = states.read()?;
+        let mut output = Output::new(states.output.as_deref());
+        match json::elements(&text) {
+            Ok(Some(cases)) => self.many(&cases, &mut output),
+            Ok(None) => self.one(&text, &mut output),
+            Err(error) => Err(self.failed(&error.into())),
+        }
+    }
+
+    fn one(&self, text: &[u8], output: &mut Output) -> Result<(), Failure> {
+        let answer = self.answer(text, &AtomicBool::new(false)).map_err(|error| self.failed(&error))?;
+        output.write(&with_line_end(answer)).map(drop)
+    }
+
+    fn many(&self, cases: &[&RawValue], output: &mut Output) -> Result<(), Failure> {
+        let bar = progress(cases.len(), output);
+        let mut ending = Ok(());
+        let mut header = Header::Wanted;
+        let work = |case: &&RawValue, interrupt: &AtomicBool| self.answer(case.get().as_bytes(), interrupt);
+        compute::in_order(cases, work, |index, answer| {
+            bar.inc(1);
+            if let Err(error) = &answer {
+                let place = format!("{}: case {index}{}", self.place, name(cases[index]));
+                bar.suspend(|| tell(&told(&place, error)));
+                ending = Err(Failure::Case);
+            }
+            let lines = match (answer, self.format) {
+                (Ok(csv), Format::Csv) => table(index, &csv, &mut header),
+                (Err(_), Format::Csv) => return ControlFlow::Continue(()),
+                (Ok(line), _) => with_line_end(line),
+                (Err(error), _) => with_line_end(error.problem().to_json()),
+            };
+            match output.write(&lines) {
+                Ok(true) => ControlFlow::Continue(()),
+                Ok(false) => ControlFlow::Break(()),
+                Err(failure) => {
+                    ending = Err(failure);
+                    ControlFlow::Break(())
+                }
+            }
+        });
+        bar.finish_and_clear();
+        ending
+    }
+
+    fn answer(&self, text: &[u8], interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+        (self.answer)(json::parse(text)?, self.format, self.row_limit, interrupt)
+    }
+
+    fn failed(&self, error: &ApiError) -> Failure {
+        tell(&told(&self.place, error));
+        Failure::Case
+    }
+}
+
+/// A bar on standard error, where that is a terminal and the results go elsewhere.
+fn progress(count: usize, output: &Output) -> ProgressBar {
+    if matches!(output, Output::Standard) && io::stdout().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} cases, {eta} to go");
+    ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// A problem document for people: its title and detail, and a line a fault.
+fn told(place: &str, error: &ApiError) -> String {
+    let problem = error.problem();
+    let fault = |FieldError { pointer, detail }: &FieldError| {
+        if pointer.is_empty() { format!("  {detail}\n") } else { format!("  {pointer}: {detail}\n") }
+    };
+    let faults: String = problem.errors.iter().map(fault).collect();
+    format!("reentry: {place}: {}: {}\n{faults}", problem.title, problem.detail)
+}
+
+/// The name of a case, if it has one, quoted.
+fn name(case: &RawValue) -> String {
+    let tree = json::parse(case.get().as_bytes()).unwrap_or_default();
+    tree["name"].as_str().map_or_else(String::new, |name| format!(" {name:?}"))
+}
+
+fn with_line_end(mut text: Vec<u8>) -> Vec<u8> {
+    if !text.ends_with(b"\n") {
+        text.push(b'\n');
+    }
+    text
+}
+
+/// Whether the table still needs its header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Header {
+    Wanted,
+    Written,
+}
+
+/// The lines of a case with its index before them, the header on the first of all tables alone.
+fn table(index: usize, csv: &[u8], header: &mut Header) -> Vec<u8> {
+    let mut table = Vec::with_capacity(csv.len() + csv.len() / 16);
+    let mut lines = csv.split_inclusive(|byte| *byte == b'\n');
+    let names = lines.next().unwrap_or_default();
+    if *header == Header::Wanted {
+        table.extend_from_slice(b"case,");
+        table.extend_from_slice(names);
+        *header = Header::Written;
+    }
+    let start = format!("{index},");
+    for line in lines {
+        table.extend_from_slice(start.as_bytes());
+        table.extend_from_slice(line);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Header, table, told};
+    use crate::error::ApiError;
+    use crate::wire::reader::Fault;
+
+    #[test]
+    fn tables_become_one_table() {
+        let mut header = Header::Wanted;
+        assert_eq!(
+            table(0, b"time,speed\n0.0,7.0\n1.0,6.0\n", &mut header),
+            b"case,time,speed\n0,0.0,7.0\n0,1.0,6.0\n"
+        );
+        assert_eq!(table(12, b"time,speed\n0.0,7.0\n", &mut header), b"12,0.0,7.0\n");
+    }
+
+    #[test]
+    fn a_problem_is_told_with_a_line_a_fault() {
+        let faults = vec![Fault::new("/vehicle/mass", "is required"), Fault::new("", "must be an object, got null")];
+        let expected = "reentry: case.json: Not a valid case: the request has 2 faults\n  \
+                        /vehicle/mass: is required\n  must be an object, got null\n";
+        assert_eq!(told("case.json", &ApiError::Invalid(faults)), expected);
+    }
+}
