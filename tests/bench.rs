@@ -1,42 +1,129 @@
-//! `cargo bench`: what a flight costs, beside another integrator and beside its parts.
+//! `cargo bench --bench flights`: what a flight costs, in counts and in time, beside the DOP853 of `ode_solvers` with the same
+//! derivative, and what lanes, sensitivities and verification cost in plain flights.
 //!
-//! The machines are noisy: contenders take turns, and each line gives the median of many rounds, and the ratio of medians within one run.
+//! Machines are noisy: in every comparison the contenders take turns, and a time is the median of many rounds. Counts are exact.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark that cannot go on has failed")]
 
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use ode_solvers::{Dop853, SVector, System as OdeSystem};
+use ode_solvers::dop_shared::OutputType;
+use ode_solvers::{Dop853, SVector};
 use reentry::integrate::System;
 use reentry::motion::Cartesian;
-use reentry::{Case, Scenario, simulate};
+use reentry::sensitivity::sensitivities;
+use reentry::simulate::{arrival, arrivals};
+use reentry::verification::verify;
+use reentry::{Case, FlightPath, Scenario, Solver, Stop, simulate};
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_tests::cases::thesis_cases;
 
+const CASES: [&str; 4] = ["target_1", "target_2", "impulse", "shallow_glide"];
+const ROUNDS: usize = 1000;
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 fn main() {
-    let rounds = 300;
-    let names = ["target_1", "target_2", "impulse", "shallow_glide"];
-    for name in names {
+    flights();
+    beside_ode_solvers();
+    number_types();
+}
+
+/// One flight at the default tolerance.
+fn flights() {
+    println!("| flight | right-hand sides | steps | rejected | integration and events | with peaks |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    for name in CASES {
         let scenario = scenario(name);
-        let interrupt = AtomicBool::new(false);
-        let flight = simulate(&scenario, &interrupt).unwrap();
-        let end = flight.end_time();
-        let case = *scenario.case();
-        let [ours, theirs] = medians(
-            rounds,
-            [
-                &mut || {
-                    black_box(simulate(&scenario, &interrupt).unwrap());
-                },
-                &mut || {
-                    black_box(ode_solvers(&case, end, case.solver.relative_tolerance));
-                },
-            ],
-        );
-        let statistics = flight.statistics();
-        println!("{name}: {:.1} µs {statistics:?}; ode_solvers {:.1} µs", ours * 1e6, theirs * 1e6);
+        let statistics = arrival(&scenario, &NEVER).unwrap().statistics;
+        let [plain, peaks] = medians([&mut || drop(black_box(arrival(black_box(&scenario), &NEVER))), &mut || {
+            drop(black_box(simulate(black_box(&scenario), &NEVER)))
+        }]);
+        let (evaluations, steps, rejected) = (statistics.evaluations, statistics.steps, statistics.rejected_steps);
+        println!("| {name} | {evaluations} | {steps} | {rejected} | {plain:.1} µs | {peaks:.1} µs |");
     }
+}
+
+/// To the time of the impact, there at equal accuracy: our time over theirs, which is interpolated to our error.
+fn beside_ode_solvers() {
+    println!(
+        "\n| flight | tolerance | error | right-hand sides | time | `ode_solvers` error | right-hand sides | time | at equal accuracy |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    for name in CASES {
+        let case = *scenario(name).case();
+        let with_tolerance =
+            |relative_tolerance: f64| Case { solver: Solver { relative_tolerance, ..case.solver }, ..case };
+        let exact = arrival(&Scenario::new(with_tolerance(1e-14)).unwrap(), &NEVER).unwrap();
+        let miss = |position: [f64; 3]| {
+            position.iter().zip(exact.state.position.iter()).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        let tolerances = [1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
+        // The ground is out of the way, so that both fly to the same time; its crossing is looked for all the same.
+        let to_the_time =
+            |tolerance| Case { stop: Stop { altitude: -1e5, time: exact.time }, ..with_tolerance(tolerance) };
+        let ours = tolerances.map(|tolerance| Scenario::new(to_the_time(tolerance)).unwrap());
+        let theirs = tolerances.map(|tolerance| move || peer(&case, exact.time, tolerance));
+        let times: Vec<_> = ours
+            .iter()
+            .zip(&theirs)
+            .map(|(ours, theirs)| {
+                medians([&mut || drop(black_box(arrival(ours, &NEVER))), &mut || drop(black_box(theirs()))])
+            })
+            .collect();
+        let peers = theirs.each_ref().map(|theirs| theirs());
+        for index in 1..tolerances.len() {
+            let arrival = arrival(&ours[index], &NEVER).unwrap();
+            let error = miss(arrival.state.position.into());
+            let [time, their_time] = times[index];
+            let (position, evaluations) = peers[index];
+            // Time goes with a small power of the error: a straight line between the logarithms of two of theirs.
+            let point = |index: usize| (miss(peers[index].0).ln(), times[index][1].ln());
+            let ((x0, y0), (x1, y1)) = (point(index - 1), point(index));
+            let at_our_error = (y0 + (y1 - y0) * (error.ln() - x0) / (x1 - x0)).exp();
+            println!(
+                "| {name} | {:e} | {error:.1e} m | {} | {time:.1} µs | {:.1e} m | {evaluations} | {their_time:.1} µs | {:.2} |",
+                tolerances[index],
+                arrival.statistics.evaluations,
+                miss(position),
+                time / at_our_error,
+            );
+        }
+    }
+}
+
+/// TARGET case 2: lanes by the flight, derivatives and verification in plain flights.
+fn number_types() {
+    let case = *scenario("target_2").case();
+    let flight = simulate(&Scenario::new(case).unwrap(), &NEVER).unwrap();
+    let nominal = FlightPath::from_planet_fixed(&case.initial_state);
+    // Dispersed by up to 1 per cent, evenly.
+    let member = |index: u32| {
+        let part = f64::from(index) / 256.0 * 0.02 + 0.99;
+        let state = FlightPath { speed: nominal.speed * part, ..nominal };
+        Scenario::new(Case { initial_state: state.to_planet_fixed(), ..case }).unwrap()
+    };
+    let members: Vec<_> = (0..256).map(member).collect();
+    let scenario = Scenario::new(case).unwrap();
+    let [alone, four, eight, plain, derivatives, verification] = medians([
+        &mut || drop(black_box(members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>())),
+        &mut || drop(black_box(arrivals::<4>(&members, &NEVER))),
+        &mut || drop(black_box(arrivals::<8>(&members, &NEVER))),
+        &mut || drop(black_box(simulate(&scenario, &NEVER))),
+        &mut || drop(black_box(sensitivities(&flight))),
+        &mut || drop(black_box(verify(&scenario, &flight, &NEVER))),
+    ]);
+    println!("\n| TARGET case 2 | time | over a plain flight |");
+    println!("| --- | --- | --- |");
+    let line = |what: &str, time: f64, plain: f64| println!("| {what} | {time:.1} µs | {:.2} |", time / plain);
+    line("an arrival, one of 256 dispersed ones", alone / 256.0, alone / 256.0);
+    line("in lanes of 4", four / 256.0, alone / 256.0);
+    line("in lanes of 8", eight / 256.0, alone / 256.0);
+    line("a flight with its peaks", plain, plain);
+    line("its sensitivities, 5 by 12", derivatives, plain);
+    line("its verification", verification, plain);
 }
 
 fn scenario(name: &str) -> Scenario {
@@ -45,33 +132,72 @@ fn scenario(name: &str) -> Scenario {
     Job::try_from_tree(tree, Wanted::Answer).unwrap().scenario
 }
 
-struct Motion(Cartesian);
-impl OdeSystem<f64, SVector<f64, 6>> for Motion {
-    fn system(&self, _: f64, state: &SVector<f64, 6>, derivative: &mut SVector<f64, 6>) {
-        *derivative = SVector::from(self.0.derivative(&(*state).into()));
+/// The equations in units of the planet's radius and circular speed, as `ode_solvers` has one tolerance for all components.
+struct Scaled {
+    motion: Cartesian,
+    length: f64,
+    speed: f64,
+}
+
+impl Scaled {
+    fn new(case: &Case) -> Self {
+        let length = case.planet.equatorial_radius();
+        let speed = (case.planet.gravitational_parameter / length).sqrt();
+        Self { motion: Cartesian(case.forces()), length, speed }
     }
 }
 
-fn ode_solvers(case: &Case, end: f64, tolerance: f64) -> [f64; 6] {
-    let state: [f64; 6] = case.initial_state.into();
-    let mut solver =
-        Dop853::new(Motion(Cartesian(case.forces())), 0.0, end, end, SVector::from(state), tolerance, 1e-3);
-    solver.integrate().unwrap();
-    (*solver.y_out().last().unwrap()).into()
+impl ode_solvers::System<f64, SVector<f64, 6>> for Scaled {
+    fn system(&self, _: f64, state: &SVector<f64, 6>, derivative: &mut SVector<f64, 6>) {
+        let [x, y, z, vx, vy, vz] = (*state).into();
+        let (length, speed) = (self.length, self.speed);
+        let state = [x * length, y * length, z * length, vx * speed, vy * speed, vz * speed];
+        let [vx, vy, vz, ax, ay, az] = self.motion.derivative(&state);
+        let (by_speed, by_acceleration) = (1.0 / speed, length / (speed * speed));
+        let rates = [vx * by_speed, vy * by_speed, vz * by_speed];
+        *derivative = SVector::from([
+            rates[0],
+            rates[1],
+            rates[2],
+            ax * by_acceleration,
+            ay * by_acceleration,
+            az * by_acceleration,
+        ]);
+    }
 }
 
-/// The median seconds of each contender, which take turns.
-fn medians<const K: usize>(rounds: usize, mut contenders: [&mut dyn FnMut(); K]) -> [f64; K] {
-    let mut times = [(); K].map(|()| Vec::with_capacity(rounds));
-    for _ in 0..rounds {
+/// The position at a time, and the evaluations.
+fn peer(case: &Case, time: f64, tolerance: f64) -> ([f64; 3], u32) {
+    let scaled = Scaled::new(case);
+    let (length, speed) = (scaled.length, scaled.speed);
+    let [x, y, z, vx, vy, vz]: [f64; 6] = case.initial_state.into();
+    let start = SVector::from([x / length, y / length, z / length, vx / speed, vy / speed, vz / speed]);
+    let end = time * speed / length;
+    // Its defaults, but for the output, which is the end of each step and nothing between.
+    let (safety, beta, least, greatest, first) = (0.9, 0.0, 0.333, 6.0, 0.0);
+    let (steps, stiffness) = (100_000, 1000);
+    let output = OutputType::Sparse;
+    let mut solver = Dop853::from_param(
+        scaled, 0.0, end, end, start, tolerance, tolerance, safety, beta, least, greatest, end, first, steps,
+        stiffness, output,
+    );
+    let statistics = solver.integrate().unwrap();
+    let state = solver.y_out().last().unwrap();
+    ([state[0] * length, state[1] * length, state[2] * length], statistics.num_eval)
+}
+
+/// The median time of each contender, in µs; they take turns.
+fn medians<const K: usize>(mut contenders: [&mut dyn FnMut(); K]) -> [f64; K] {
+    let mut times = [(); K].map(|()| Vec::with_capacity(ROUNDS));
+    for _ in 0..ROUNDS {
         for (contender, times) in contenders.iter_mut().zip(&mut times) {
             let start = Instant::now();
             contender();
-            times.push(start.elapsed().as_secs_f64());
+            times.push(start.elapsed().as_secs_f64() * 1e6);
         }
     }
     times.map(|mut times| {
         times.sort_by(f64::total_cmp);
-        times[rounds / 2]
+        times[ROUNDS / 2]
     })
 }

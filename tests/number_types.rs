@@ -9,7 +9,7 @@ use reentry::scalar::{Lanes, Scalar};
 use reentry::sensitivity::{Gradient, Sensitivities, sensitivities};
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::Termination;
-use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Scenario, Stop};
+use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Scenario, Stop, simulate};
 
 use crate::check::near;
 use crate::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
@@ -105,6 +105,19 @@ proptest! {
         prop_assert_eq!(end.time.to_bits(), flight.end_time().to_bits());
         prop_assert_eq!(FlightPath::from_planet_fixed(&end.state).wrapped(), flight.last().flight_path);
         prop_assert_eq!(end.termination, flight.termination());
+    }
+}
+
+/// Neither the integration nor the search for the impact takes any memory; recording a flight takes its steps.
+#[test]
+fn flying_allocates_nothing_and_recording_little() {
+    let cases = [target_2(), spherical(target_2()), with_tolerance(target_2(), 1e-6)];
+    for scenario in cases.map(|case| Scenario::new(case).unwrap()) {
+        let interrupt = AtomicBool::new(false);
+        let flown = allocation_counter::measure(|| assert!(arrival(&scenario, &interrupt).is_ok()));
+        assert_eq!(flown.count_total, 0);
+        let recorded = allocation_counter::measure(|| assert!(simulate(&scenario, &interrupt).is_ok()));
+        assert_eq!(recorded.count_total, 1, "the list of steps, with room for 64");
     }
 }
 
