@@ -38,9 +38,10 @@ fn flights() {
     for name in CASES {
         let scenario = scenario(name);
         let statistics = arrival(&scenario, &NEVER).unwrap().statistics;
-        let [plain, peaks] = medians([&mut || drop(black_box(arrival(black_box(&scenario), &NEVER))), &mut || {
-            drop(black_box(simulate(black_box(&scenario), &NEVER)))
-        }]);
+        let [plain, peaks] = medians([
+            &mut timed(|| arrival(black_box(&scenario), &NEVER)),
+            &mut timed(|| simulate(black_box(&scenario), &NEVER)),
+        ]);
         let (evaluations, steps, rejected) = (statistics.evaluations, statistics.steps, statistics.rejected_steps);
         println!("| {name} | {evaluations} | {steps} | {rejected} | {plain:.1} µs | {peaks:.1} µs |");
     }
@@ -69,9 +70,7 @@ fn beside_ode_solvers() {
         let times: Vec<_> = ours
             .iter()
             .zip(&theirs)
-            .map(|(ours, theirs)| {
-                medians([&mut || drop(black_box(arrival(ours, &NEVER))), &mut || drop(black_box(theirs()))])
-            })
+            .map(|(ours, theirs)| medians([&mut timed(|| arrival(ours, &NEVER)), &mut timed(theirs)]))
             .collect();
         let peers = theirs.each_ref().map(|theirs| theirs());
         for index in 1..tolerances.len() {
@@ -108,12 +107,12 @@ fn number_types() {
     let members: Vec<_> = (0..256).map(member).collect();
     let scenario = Scenario::new(case).unwrap();
     let [alone, four, eight, plain, derivatives, verification] = medians([
-        &mut || drop(black_box(members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>())),
-        &mut || drop(black_box(arrivals::<4>(&members, &NEVER))),
-        &mut || drop(black_box(arrivals::<8>(&members, &NEVER))),
-        &mut || drop(black_box(simulate(&scenario, &NEVER))),
-        &mut || drop(black_box(sensitivities(&flight))),
-        &mut || drop(black_box(verify(&scenario, &flight, &NEVER))),
+        &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
+        &mut timed(|| arrivals::<4>(&members, &NEVER)),
+        &mut timed(|| arrivals::<8>(&members, &NEVER)),
+        &mut timed(|| simulate(&scenario, &NEVER)),
+        &mut timed(|| sensitivities(&flight)),
+        &mut timed(|| verify(&scenario, &flight, &NEVER)),
     ]);
     println!("\n| TARGET case 2 | time | over a plain flight |");
     println!("| --- | --- | --- |");
@@ -184,6 +183,13 @@ fn peer(case: &Case, time: f64, tolerance: f64) -> ([f64; 3], u32) {
     let statistics = solver.integrate().unwrap();
     let state = solver.y_out().last().unwrap();
     ([state[0] * length, state[1] * length, state[2] * length], statistics.num_eval)
+}
+
+/// A contender whose result counts as used.
+fn timed<T>(mut job: impl FnMut() -> T) -> impl FnMut() {
+    move || {
+        black_box(job());
+    }
 }
 
 /// The median time of each contender, in µs; they take turns.

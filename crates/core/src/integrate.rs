@@ -158,7 +158,7 @@ pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: 
     let state = from_fn(|i| abreast(&integrators, |integrator| integrator.state[i]));
     let derivative = from_fn(|i| abreast(&integrators, |integrator| integrator.derivative[i]));
     let length = abreast(&integrators, |integrator| integrator.control.length);
-    let trial = step::attempt(system, &state, &derivative, length);
+    let trial = step::attempt(&step::Once(system), &state, &derivative, length);
     let end_derivative = system.derivative(&trial.end);
     let mut lane = 0..;
     integrators.map(|integrator| {
@@ -252,8 +252,8 @@ impl<'a, const N: usize> Control<'a, N> {
     /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
     fn error(&self, start: &[f64; N], trial: &step::Trial<f64, N>) -> f64 {
         let [mut fifth, mut third] = [0.0; 2];
-        for i in 0..N {
-            let size = start[i].abs().max(trial.end[i].abs()).max(self.magnitudes[i]);
+        for (i, magnitude) in self.magnitudes.iter().enumerate() {
+            let size = start[i].abs().max(trial.end[i].abs()).max(*magnitude);
             let weight = 1.0 / (self.limits.relative_tolerance * size);
             fifth += (trial.error_fifth[i] * weight).powi(2);
             third += (trial.error_third[i] * weight).powi(2);

@@ -60,7 +60,7 @@ pub fn sensitivities(flight: &Trajectory) -> Sensitivities {
     let [r, theta, phi, v, gamma, psi]: [f64; 6] = FlightPath::from_planet_fixed(&flight.case.initial_state).into();
     let numbers =
         [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, r, theta, phi, v, gamma, psi];
-    let (_, slopes) = jacobian(|numbers| arrival(flight, numbers.into()), &SVector::from(numbers));
+    let (_, slopes) = jacobian(|numbers| arrival(flight, &numbers.into()), &SVector::from(numbers));
     let gradient = |row: usize| {
         let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, surface_density, state @ ..]: [f64;
             INPUTS] = std::array::from_fn(|input| slopes[(row, input)]);
@@ -85,8 +85,8 @@ pub fn sensitivities(flight: &Trajectory) -> Sensitivities {
 }
 
 /// Time, longitude, geocentric latitude, speed and flight-path angle at the end of the flight.
-fn arrival(flight: &Trajectory, numbers: [Dual; INPUTS]) -> SVector<Dual, 5> {
-    let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = numbers;
+fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS]) -> SVector<Dual, 5> {
+    let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = *numbers;
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
     let forces = Forces::new(flight.case.models(), parameters);
     let start = FlightPath::from(start);

@@ -185,7 +185,7 @@ pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
 }
 
 /// A system whose derivative stands in the program once, not in every stage: in wide numbers it is long.
-struct Once<'a, F>(&'a F);
+pub(super) struct Once<'a, F>(pub(super) &'a F);
 
 impl<F: System<S, N>, S: Scalar, const N: usize> System<S, N> for Once<'_, F> {
     #[inline(never)]
