@@ -3,7 +3,7 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 
-.PHONY: help run build test check openapi validation theory
+.PHONY: help run build test check openapi validation theory bench
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -34,6 +34,9 @@ openapi: ## Write openapi/openapi.json anew
 
 validation: ## Print how the results compare with published ones
 	cargo run --quiet --release --locked --package reentry-tests --example validation
+
+bench: ## Measure what flights and rows cost, beside another integrator
+	cargo bench --locked --package reentry-tests
 
 theory: ## Print how near the analytic theories come to the simulation
 	cargo run --quiet --locked --package reentry-tests --example theory
