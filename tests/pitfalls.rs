@@ -71,6 +71,9 @@ fn the_density_is_finite_at_every_altitude() {
     for altitude in [0.0, -1e5, -5e6, -1e9, -1e300, 1e300] {
         let density: f64 = Atmosphere::EARTH_JAMESON.density(altitude);
         assert!(density.is_finite(), "{density} at {altitude}");
+        // Of the least scale height there is, whose reciprocal no number holds.
+        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(altitude);
+        assert!(thin.is_finite(), "{thin} at {altitude}");
     }
     // A heavy body at great speed straight down: its first trial steps end far below the ground.
     let dart = starting(

@@ -28,7 +28,8 @@ impl Atmosphere {
     #[inline(always)]
     pub fn density<S: Scalar>(&self, altitude: S) -> S {
         let Self::Exponential { surface_density, scale_height } = *self;
-        let height = altitude * (1.0 / scale_height);
+        // Of a subnormal scale height the reciprocal would be infinite, and its product with no altitude no number.
+        let height = altitude * scale_height.recip().min(f64::MAX);
         let clamped = S::select(height.less_than(-700.0), S::from(-700.0), height);
         (-clamped).exp() * surface_density
     }

@@ -149,10 +149,9 @@ impl<'a, F: Pace<N>, const N: usize> Integrator<'a, F, N> {
 /// Lane by lane those of [`Integrator::advance`].
 pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: usize>(
     system: &M,
-    integrators: [Option<&mut Integrator<'_, F, N>>; L],
+    mut integrators: [Option<&mut Integrator<'_, F, N>>; L],
     ends: [f64; L],
 ) -> [Option<Result<Step<N>, IntegrationError>>; L] {
-    let mut integrators = integrators;
     let trial_ends: [_; L] =
         from_fn(|lane| integrators[lane].as_mut().map(|integrator| integrator.control.trial_end(ends[lane])));
     let state = from_fn(|i| abreast(&integrators, |integrator| integrator.state[i]));
@@ -191,7 +190,7 @@ struct Control<'a, const N: usize> {
     time: f64,
     /// Proposed for the next step, s.
     length: f64,
-    /// By how much the step after the next may be longer.
+    /// By how much the next accepted step may lengthen it: not at all after a rejected one.
     growth: f64,
     statistics: Statistics,
 }
