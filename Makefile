@@ -3,7 +3,7 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 
-.PHONY: help run build test check openapi validation theory bench
+.PHONY: help run build test check openapi validation theory bench load
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -37,6 +37,11 @@ validation: ## Print how the results compare with published ones
 
 bench: ## Measure what flights and rows cost, beside another integrator
 	cargo bench --locked --package reentry-tests
+
+# About a minute; nothing else should run meanwhile.
+load: build ## Measure the service under load, beside one that computes without its pool of workers
+	cargo build --quiet --release --locked --package reentry-tests --example load
+	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/load
 
 theory: ## Print how near the analytic theories come to the simulation
 	cargo run --quiet --locked --package reentry-tests --example theory

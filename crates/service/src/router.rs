@@ -39,6 +39,21 @@ pub fn document() -> Value {
 pub fn app(state: AppState) -> Router {
     let (api, _) = routes().split_for_parts();
     let document = document();
+    let api = api
+        .route("/", get(home::home))
+        .route("/openapi.json", get(move || std::future::ready(Json(document.clone()))))
+        .route("/docs", get(docs::redirect))
+        .route("/docs/", get(docs::page))
+        .route("/docs/{*name}", get(docs::file))
+        .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })
+        .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
+            ApiError::MethodNotAllowed(uri.path().to_owned())
+        });
+    layered(api, state)
+}
+
+/// Routes with what surrounds those of the service: compression, CORS, the log.
+pub fn layered(routes: Router<AppState>, state: AppState) -> Router {
     let compression = CompressionLayer::new()
         .quality(CompressionLevel::Fastest)
         .compress_when(SizeAbove::new(state.config.compress_above));
@@ -47,17 +62,5 @@ pub fn app(state: AppState) -> Router {
         .allow_methods([Method::GET, Method::POST])
         .allow_headers([header::CONTENT_TYPE, header::ACCEPT, REQUEST_ID])
         .expose_headers([REQUEST_ID, header::RETRY_AFTER]);
-    api.route("/", get(home::home))
-        .route("/openapi.json", get(move || std::future::ready(Json(document.clone()))))
-        .route("/docs", get(docs::redirect))
-        .route("/docs/", get(docs::page))
-        .route("/docs/{*name}", get(docs::file))
-        .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })
-        .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
-            ApiError::MethodNotAllowed(uri.path().to_owned())
-        })
-        .layer(compression)
-        .layer(cors)
-        .layer(middleware::from_fn(observe))
-        .with_state(state)
+    routes.layer(compression).layer(cors).layer(middleware::from_fn(observe)).with_state(state)
 }
