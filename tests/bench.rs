@@ -7,7 +7,6 @@
 
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
@@ -20,6 +19,7 @@ use reentry::{Case, FlightPath, Scenario, Solver, Stop, simulate};
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_tests::cases::thesis_cases;
+use reentry_tests::timing::{medians, timed};
 
 const CASES: [&str; 4] = ["target_1", "target_2", "impulse", "shallow_glide"];
 const ROUNDS: usize = 1000;
@@ -38,7 +38,7 @@ fn flights() {
     for name in CASES {
         let scenario = scenario(name);
         let statistics = arrival(&scenario, &NEVER).unwrap().statistics;
-        let [plain, peaks] = medians([
+        let [plain, peaks] = micros([
             &mut timed(|| arrival(black_box(&scenario), &NEVER)),
             &mut timed(|| simulate(black_box(&scenario), &NEVER)),
         ]);
@@ -70,7 +70,7 @@ fn beside_ode_solvers() {
         let times: Vec<_> = ours
             .iter()
             .zip(&theirs)
-            .map(|(ours, theirs)| medians([&mut timed(|| arrival(ours, &NEVER)), &mut timed(theirs)]))
+            .map(|(ours, theirs)| micros([&mut timed(|| arrival(ours, &NEVER)), &mut timed(theirs)]))
             .collect();
         let peers = theirs.each_ref().map(|theirs| theirs());
         for index in 1..tolerances.len() {
@@ -106,7 +106,7 @@ fn number_types() {
     };
     let members: Vec<_> = (0..256).map(member).collect();
     let scenario = Scenario::new(case).unwrap();
-    let [alone, four, eight, plain, derivatives, verification] = medians([
+    let [alone, four, eight, plain, derivatives, verification] = micros([
         &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
         &mut timed(|| arrivals::<4>(&members, &NEVER)),
         &mut timed(|| arrivals::<8>(&members, &NEVER)),
@@ -185,25 +185,7 @@ fn peer(case: &Case, time: f64, tolerance: f64) -> ([f64; 3], u32) {
     ([state[0] * length, state[1] * length, state[2] * length], statistics.num_eval)
 }
 
-/// A contender whose result counts as used.
-fn timed<T>(mut job: impl FnMut() -> T) -> impl FnMut() {
-    move || {
-        black_box(job());
-    }
-}
-
-/// The median time of each contender, in µs; they take turns.
-fn medians<const K: usize>(mut contenders: [&mut dyn FnMut(); K]) -> [f64; K] {
-    let mut times = [(); K].map(|()| Vec::with_capacity(ROUNDS));
-    for _ in 0..ROUNDS {
-        for (contender, times) in contenders.iter_mut().zip(&mut times) {
-            let start = Instant::now();
-            contender();
-            times.push(start.elapsed().as_secs_f64() * 1e6);
-        }
-    }
-    times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[ROUNDS / 2]
-    })
+/// The median time of each contender, in µs.
+fn micros<const K: usize>(contenders: [&mut dyn FnMut(); K]) -> [f64; K] {
+    medians(ROUNDS, contenders).map(|seconds| seconds * 1e6)
 }

@@ -4,15 +4,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a benchmark that cannot go on has failed")]
 
-use std::hint::black_box;
-use std::time::Instant;
-
 use reentry::trajectory::Sampling;
 use reentry::{Scenario, simulate};
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_service::wire::trajectory::{COLUMNS, Extras, SimulateResponse};
 use reentry_tests::cases::thesis_cases;
+use reentry_tests::timing::{medians, timed};
 
 const ROWS: usize = 1000;
 const ROUNDS: usize = 300;
@@ -33,21 +31,15 @@ fn line(name: &str) -> String {
     let csv = String::from_utf8(trajectory.to_csv().unwrap()).unwrap();
     let numbers: Vec<f64> = csv.lines().skip(1).flat_map(|line| line.split(',')).map(|x| x.parse().unwrap()).collect();
     assert_eq!(numbers.len(), ROWS * COLUMNS.len());
-    let medians = medians([
-        &mut || {
-            let instants = flight.instants(&Sampling::Count(ROWS), ROWS).unwrap();
-            black_box(flight.points(&instants));
-        },
-        &mut || {
-            black_box(serde_json::to_vec(&response).unwrap());
-        },
-        &mut || {
-            black_box(trajectory.to_csv().unwrap());
-        },
-        &mut || {
-            black_box(serde_json::to_vec(&numbers).unwrap());
-        },
-    ]);
+    let medians = medians(
+        ROUNDS,
+        [
+            &mut timed(|| flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap())),
+            &mut timed(|| serde_json::to_vec(&response).unwrap()),
+            &mut timed(|| trajectory.to_csv().unwrap()),
+            &mut timed(|| serde_json::to_vec(&numbers).unwrap()),
+        ],
+    );
     #[expect(clippy::cast_precision_loss, reason = "14 000 numbers")]
     let [evaluated, json, csv, bare] = medians.map(|seconds| seconds * 1e9 / numbers.len() as f64);
     format!("| {name} | {evaluated:.1} | {json:.1} | {csv:.1} | {bare:.1} | {:.1} |", evaluated + json)
@@ -62,20 +54,4 @@ fn answered(name: &str) -> (Scenario, SimulateResponse) {
     let flight = simulate(&scenario, &false.into()).unwrap();
     let points = flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap());
     (scenario, SimulateResponse::new(job, &flight, Some(points), Extras::default(), 0.0))
-}
-
-/// The median seconds of each contender, which take turns.
-fn medians<const K: usize>(mut contenders: [&mut dyn FnMut(); K]) -> [f64; K] {
-    let mut times = [(); K].map(|()| Vec::with_capacity(ROUNDS));
-    for _ in 0..ROUNDS {
-        for (contender, times) in contenders.iter_mut().zip(&mut times) {
-            let start = Instant::now();
-            contender();
-            times.push(start.elapsed().as_secs_f64());
-        }
-    }
-    times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[ROUNDS / 2]
-    })
 }

@@ -3,3 +3,4 @@
 pub mod cases;
 pub mod service;
 pub mod theory;
+pub mod timing;
