@@ -447,3 +447,47 @@ proptest! {
         }
     }
 }
+
+/// Where a theory holds is a matter of the flight, not of the rows that are wanted.
+#[test]
+fn the_stretch_does_not_depend_on_the_rows() {
+    let pull_up = |lift, drag, flight_path_angle| {
+        let entry = FlightPath {
+            radius: 6_478_137.0,
+            longitude: -0.7,
+            geocentric_latitude: 0.2,
+            speed: 9000.0,
+            flight_path_angle,
+            heading: 0.5,
+        };
+        let vehicle = vehicle(5500.0, 12.0, lift, drag);
+        Case {
+            planet: Planet::EARTH_JAMESON_LISTING.spherical(),
+            vehicle,
+            initial_state: entry.to_planet_fixed(),
+            ..target_2()
+        }
+    };
+    for (solution, case) in [
+        (Solution::ShallowGlide, table(4, Planet::EARTH_JAMESON_LISTING)),
+        (Solution::Loh, table(4, Planet::EARTH_JAMESON_LISTING)),
+        (Solution::SteepGlide, table(5, Planet::EARTH_JAMESON_LISTING)),
+        (Solution::MediumGlide, table(7, Planet::EARTH_JAMESON_LISTING)),
+        // These skip: the theory ends where the flight first climbs, not where it climbs once more.
+        (Solution::SteepGlide, pull_up(0.03, 0.05, -0.1)),
+        (Solution::MediumGlide, pull_up(0.03, 0.05, -0.1)),
+    ] {
+        let flight = fly(case);
+        let validity = |sampling: Sampling| {
+            let instants = flight.instants(&sampling, usize::MAX).unwrap();
+            theory(solution, case).compare(&flight, &flight.points(&instants)).validity
+        };
+        let dense = validity(Sampling::PerStep(64));
+        assert_eq!(validity(Sampling::Count(2)), dense, "{solution:?}");
+        assert_eq!(validity(Sampling::Interval(1.7)), dense, "{solution:?}");
+    }
+    let flight = fly(pull_up(0.03, 0.05, -0.1));
+    let ends = flight.points(&[0.0, flight.end_time()]);
+    let ending = theory(Solution::MediumGlide, pull_up(0.03, 0.05, -0.1)).compare(&flight, &ends).validity;
+    assert_eq!(ending.end, End::Climb);
+}

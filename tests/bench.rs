@@ -111,7 +111,7 @@ fn number_types() {
         &mut timed(|| arrivals::<4>(&members, &NEVER)),
         &mut timed(|| arrivals::<8>(&members, &NEVER)),
         &mut timed(|| simulate(&scenario, &NEVER)),
-        &mut timed(|| sensitivities(&flight)),
+        &mut timed(|| sensitivities(&flight, &NEVER)),
         &mut timed(|| verify(&scenario, &flight, &NEVER)),
     ]);
     println!("\n| TARGET case 2 | time | over a plain flight |");

@@ -6,10 +6,10 @@ use proptest::prelude::*;
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
 use reentry::scalar::{Lanes, Scalar};
-use reentry::sensitivity::{Gradient, Sensitivities, sensitivities};
+use reentry::sensitivity::{self, Gradient, Sensitivities};
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::Termination;
-use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Scenario, Stop, simulate};
+use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Scenario, Stop, Trajectory, simulate};
 
 use crate::check::near;
 use crate::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
@@ -139,6 +139,10 @@ fn flights_in_lanes_end_where_they_start_when_they_must_and_when_the_flag_is_rai
     assert!(matches!(interrupted[..], [Err(reentry::simulate::SimulationError::Interrupted { .. })]));
 }
 
+fn sensitivities(flight: &Trajectory) -> Sensitivities {
+    sensitivity::sensitivities(flight, &AtomicBool::new(false)).unwrap()
+}
+
 /// The arrival's time, longitude, geocentric latitude, speed and flight-path angle.
 fn outputs(case: Case) -> [f64; 5] {
     let flight = fly(with_tolerance(case, 1e-13));
@@ -249,4 +253,54 @@ fn sensitivities_of_a_stone_thrown_upward_are_those_of_the_textbook() {
     near("by mass", slopes.speed.mass, 0.0, 1e-12);
     // Drag on the way takes speed, even where there is none yet: to first order dv/dt = -(S C_D/m) ρ v²/2.
     assert!(slopes.speed.surface_density < -0.1, "{}", slopes.speed.surface_density);
+}
+
+/// A flight that ends where it starts, on the ground and sinking, ends later from higher up: by the height over the rate.
+#[test]
+fn sensitivities_of_a_flight_that_ends_at_its_start_are_those_of_what_follows() {
+    let start = FlightPath::from_planet_fixed(&target_2().initial_state);
+    let (speed, flight_path_angle) = (100.0, -0.05);
+    let ground = FlightPath { radius: 6_378_137.0, speed, flight_path_angle, ..start };
+    let flight = fly(Case { initial_state: ground.to_planet_fixed(), ..target_2() });
+    assert_eq!(flight.end_time().to_bits(), 0);
+    let slopes = sensitivities(&flight);
+    let sink_rate = speed * f64::sin(0.05);
+    near("dt/dr", slopes.time.initial_state.radius, 1.0 / sink_rate, 1e-9 / sink_rate);
+    near("dV/dr", slopes.speed.initial_state.radius, -flight.last().loads.deceleration / sink_rate, 1e-6);
+}
+
+/// At rest and in vertical flight the flight-path angle has no slope, at a pole the longitude has none: wherever on the planet.
+#[test]
+fn what_is_undefined_has_no_slope() {
+    let planet = reentry::Planet { rotation_rate: 0.0, ..reentry::Planet::EARTH_WGS84.spherical() };
+    let slopes = |geocentric_latitude: f64, speed: f64, flight_path_angle: f64| {
+        let start = FlightPath {
+            radius: 6_379_137.0,
+            longitude: 0.3,
+            geocentric_latitude,
+            speed,
+            flight_path_angle,
+            heading: 0.0,
+        };
+        let case = Case { planet, initial_state: start.to_planet_fixed(), bank_angle: 0.0, ..target_2() };
+        sensitivities(&fly(Case { vehicle: vehicle(10.0, 0.01, 0.0, 1.0), ..case }))
+    };
+    let finite = |gradient: &Gradient| gradient.mass.is_finite();
+    for latitude in [0.0, 0.2, -1.2] {
+        let dropped = slopes(latitude, 0.0, 0.0);
+        assert!(!finite(&dropped.flight_path_angle), "dropped at {latitude}: {dropped:?}");
+        assert!(finite(&dropped.time) && finite(&dropped.speed) && finite(&dropped.longitude), "{dropped:?}");
+        let thrown = slopes(latitude, 100.0, -std::f64::consts::FRAC_PI_2);
+        assert!(!finite(&thrown.flight_path_angle), "straight down at {latitude}: {thrown:?}");
+    }
+    let polar = slopes(std::f64::consts::FRAC_PI_2, 0.0, 0.0);
+    assert!(!finite(&polar.longitude) && !finite(&polar.geocentric_latitude) && finite(&polar.time), "{polar:?}");
+    let inclined = slopes(0.2, 100.0, -1.0);
+    assert!(finite(&inclined.flight_path_angle) && finite(&inclined.longitude));
+}
+
+#[test]
+fn the_flag_ends_the_sensitivities_as_well() {
+    let interrupted = sensitivity::sensitivities(&fly(target_2()), &AtomicBool::new(true));
+    assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));
 }

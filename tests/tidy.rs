@@ -12,8 +12,8 @@ const CORE: [&[&str]; 9] = [
     &["motion"],
     &["scenario"],
     &["trajectory"],
-    &["analytic", "sensitivity", "simulate"],
-    &["verification"],
+    &["analytic", "simulate"],
+    &["sensitivity", "verification"],
 ];
 
 /// The levels of the service.
@@ -140,6 +140,26 @@ fn is_ignored(lines: &str, path: &str) -> bool {
         None => matches(line).then_some(true),
     };
     lines.lines().filter(|line| !line.starts_with('#')).filter_map(of_line).next_back().unwrap_or(false)
+}
+
+/// A newcomer is led by the files that these name.
+#[test]
+fn every_path_that_the_documents_name_exists() {
+    let mut named = 0;
+    for document in ["README.md", "CONTRIBUTING.md"] {
+        let text = fs::read_to_string(root().join(document)).unwrap();
+        for code in text.split('`').skip(1).step_by(2) {
+            let path = code.trim_end_matches('/');
+            if [".rs", ".json", ".yaml"].iter().any(|end| path.ends_with(end)) && !path.contains([' ', '*', '{']) {
+                // A file may be named by its end, as its neighbour was before it.
+                let found =
+                    ["", "crates/core/src", "crates/service/src", "tests"].map(|folder| root().join(folder).join(path));
+                assert!(found.iter().any(|path| path.exists()), "{document}: {path} does not exist");
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 20, "only {named} files are named");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 use reentry::simulate::SimulationError;
 use reentry::verification::{Verification, verify};
-use reentry::{Case, Scenario};
+use reentry::{Case, Scenario, Solver, Stop};
 
 use crate::check::{near, relative};
 use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
@@ -59,8 +59,10 @@ proptest! {
                 Err(SimulationError::Singularity { .. }) => continue,
                 verification => verification.unwrap(),
             };
-            // The specific energy of an entry; the dense output, on which the work is summed, is exact to about 1e-7 of it at 1e-10.
-            prop_assert!(verification.energy_drift < 1e-6 * 6e7, "{verification:?}");
+            // The tolerance of 1e-10 counts per step and against the circular speed, whose energy is 6e7 J/kg; the dense output, on
+            // which the work is summed, is less exact.
+            let allowed = 1e-9 * 6e7 + 1e-6 * verification.drag_work;
+            prop_assert!(verification.energy_drift < allowed, "{verification:?}");
         }
     }
 }
@@ -69,4 +71,22 @@ proptest! {
 fn the_flag_ends_the_finer_flight_as_well() {
     let interrupted = verify(&Scenario::new(target_2()).unwrap(), &fly(target_2()), &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(SimulationError::Interrupted { .. })));
+}
+
+/// An orbit that takes nearly all the steps that a flight may have: the finer one takes more, and may.
+#[test]
+fn the_finer_flight_may_take_more_steps() {
+    let orbit = reentry::FlightPath {
+        radius: 7_378_137.0,
+        longitude: 0.0,
+        geocentric_latitude: 0.2,
+        speed: 7000.0,
+        flight_path_angle: 0.0,
+        heading: 0.5,
+    };
+    let case = Case { initial_state: orbit.to_planet_fixed(), stop: Stop { altitude: 0.0, time: 2e5 }, ..target_2() };
+    let steps = fly(case).statistics().steps;
+    let case = Case { solver: Solver { step_limit: steps + 100, ..case.solver }, ..case };
+    assert!(fly(with_tolerance(case, 1e-10)).statistics().steps <= steps);
+    assert!(verified(case).distance > 0.0);
 }

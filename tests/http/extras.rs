@@ -1,5 +1,6 @@
 //! `"sensitivities": true` and `"verify": true`.
 
+use reentry_tests::service::Service;
 use serde_json::{Value, json};
 
 use crate::check;
@@ -106,7 +107,7 @@ async fn sensitivities_are_in_the_unit_of_the_request() {
 #[tokio::test]
 async fn what_has_no_derivative_is_null() {
     let mut stone = flight("planet_relative");
-    stone["initial_state"] = json!({"type": "planet_relative", "altitude": 1000, "longitude": 0, "geocentric_latitude": 0,
+    stone["initial_state"] = json!({"type": "planet_relative", "altitude": 1000, "longitude": 0.3, "geocentric_latitude": 0.2,
         "speed": 0, "flight_path_angle": 0, "heading": 0});
     stone["planet"] = json!({"model": "custom", "gravitational_parameter": 4e14, "equatorial_radius": 6.4e6,
         "polar_radius": 6.4e6, "rotation_rate": 0});
@@ -135,4 +136,21 @@ async fn the_verification_is_that_of_the_two_flights() {
     let distance = reentry_tests::cases::distance(&coarse["final_state"], &fine["final_state"]);
     // Both through latitudes and longitudes and back.
     check::near("distance", number(&verification["distance"]), distance, 1e-8);
+}
+
+/// CSV is rows and nothing else: an option that it cannot answer is refused, never ignored.
+#[tokio::test]
+async fn csv_has_no_place_for_them() {
+    let service = Service::new();
+    let mut case = with(&target_2(), "/output", json!({"count": 2}));
+    case["sensitivities"] = json!(true);
+    case["verify"] = json!(true);
+    let answer = service.post("/simulate?format=csv", &case).await;
+    assert_eq!((answer.status.as_u16(), answer.pointers()), (422, vec!["/sensitivities".into(), "/verify".into()]));
+    case["solution"] = json!("loh");
+    let answer = service.post("/analytic?format=csv", &case).await;
+    assert_eq!((answer.status.as_u16(), answer.pointers()), (422, vec!["/sensitivities".into(), "/verify".into()]));
+    let answer = service.post("/analytic", &case).await;
+    assert_eq!(answer.status.as_u16(), 200);
+    assert!(answer.json()["sensitivities"].is_object() && answer.json()["verification"].is_object());
 }

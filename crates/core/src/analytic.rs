@@ -211,11 +211,6 @@ impl Theory {
         })
     }
 
-    /// D/m, m/s², at a point of the simulated flight, with which the predicted one is to be compared: βηV².
-    pub fn drag_deceleration(&self, point: &FlightPoint) -> f64 {
-        self.beta * self.eta_by_density * point.loads.density * point.flight_path.speed.powi(2)
-    }
-
     /// What the theory predicts at the altitude of a point of the flight; [`Solution::Loh`] takes the speed from there as well.
     ///
     /// # Errors

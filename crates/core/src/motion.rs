@@ -222,9 +222,16 @@ impl Forces {
         if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
-    /// D/m, m/s².
+    /// D/m, m/s², in a state.
     pub fn drag(&self, state: &PlanetFixed<f64>) -> f64 {
-        self.air(length(&state.velocity)).drag * self.density(self.models.planet.shape.altitude(&state.position))
+        let density = self.density(self.models.planet.shape.altitude(&state.position));
+        self.drag_under(density * state.velocity.norm_squared() * 0.5)
+    }
+
+    /// D/m, m/s², under a dynamic pressure, Pa.
+    pub fn drag_under(&self, dynamic_pressure: f64) -> f64 {
+        let (_, drag_coefficient) = self.coefficients();
+        dynamic_pressure * self.area_over_mass * drag_coefficient
     }
 
     /// The loads in a state.

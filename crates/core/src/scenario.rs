@@ -280,9 +280,10 @@ impl Scenario {
         &self.case
     }
 
-    /// The same flight at another tolerance, which must be within its bound.
-    pub(crate) fn with_tolerance(&self, relative_tolerance: f64) -> Self {
-        let solver = Solver { relative_tolerance, ..self.case.solver };
+    /// The same flight at a finer tolerance within its bound: to a hundredth, a method of order 8 takes 1.8 times the steps.
+    pub(crate) fn finer(&self, relative_tolerance: f64) -> Self {
+        let step_limit = self.case.solver.step_limit.saturating_mul(2);
+        let solver = Solver { relative_tolerance, step_limit, ..self.case.solver };
         Self { case: Case { solver, ..self.case }, ..*self }
     }
 

@@ -3,19 +3,23 @@
 //! The steps of the flight are followed once more in dual numbers, which carry all derivatives along ([`follow`]); at the ground
 //! one step of Newton's method gives the derivatives of the time of the impact, and with it those of the state there.
 
+use std::sync::atomic::AtomicBool;
+
 use nalgebra::SVector;
 use num_dual::{DualSVec64, jacobian};
 
 use crate::coordinates::FlightPath;
-use crate::integrate::{System, follow};
+use crate::integrate::{IntegrationError, System, follow};
 use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
 use crate::scalar::Scalar;
 use crate::scenario::{Case, Equations};
+use crate::simulate::SimulationError;
 use crate::trajectory::{Termination, Trajectory};
 
 /// How a quantity changes with the numbers of a case, each by itself: SI units and radians over SI units and radians.
 ///
-/// Not a finite number where there is no derivative: at a grazing impact, at rest, or in vertical flight.
+/// Not a finite number where there is no derivative: at a grazing impact and, of the angles that are undefined there, at rest,
+/// in vertical flight and at the poles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient {
     /// By the mass, kg.
@@ -53,14 +57,23 @@ pub struct Sensitivities {
 const INPUTS: usize = 12;
 type Dual = DualSVec64<INPUTS>;
 
+/// A flight that ends this near (in parts of a right angle's sine, or of the circular speed) to where an angle or the speed has no
+/// slope has none: what is computed there is rounding.
+const UNDEFINED: f64 = 1e-6;
+
 /// The derivatives of the arrival of a flight.
-pub fn sensitivities(flight: &Trajectory) -> Sensitivities {
+///
+/// # Errors
+/// When the flag is raised, at which it looks before every step.
+pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sensitivities, SimulationError> {
     let Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle } =
         flight.case.parameters();
     let [r, theta, phi, v, gamma, psi]: [f64; 6] = FlightPath::from_planet_fixed(&flight.case.initial_state).into();
     let numbers =
         [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, r, theta, phi, v, gamma, psi];
-    let (_, slopes) = jacobian(|numbers| arrival(flight, &numbers.into()), &SVector::from(numbers));
+    let arrival = |numbers: SVector<Dual, INPUTS>| arrival(flight, &numbers.into(), interrupt);
+    let (_, slopes) = jacobian(arrival, &SVector::from(numbers))
+        .map_err(|_| SimulationError::Interrupted { time: flight.end_time() })?;
     let gradient = |row: usize| {
         let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, surface_density, state @ ..]: [f64;
             INPUTS] = std::array::from_fn(|input| slopes[(row, input)]);
@@ -75,24 +88,51 @@ pub fn sensitivities(flight: &Trajectory) -> Sensitivities {
             initial_state,
         }
     };
-    Sensitivities {
+    let defined = |row: usize, size: f64| if size > UNDEFINED { gradient(row) } else { Gradient::NONE };
+    let end = flight.last().flight_path;
+    let planet = &flight.case.planet;
+    let moving = end.speed / (planet.gravitational_parameter / planet.equatorial_radius()).sqrt();
+    let off_axis = end.geocentric_latitude.cos();
+    Ok(Sensitivities {
         time: gradient(0),
-        longitude: gradient(1),
-        geocentric_latitude: gradient(2),
-        speed: gradient(3),
-        flight_path_angle: gradient(4),
-    }
+        longitude: defined(1, off_axis),
+        geocentric_latitude: defined(2, off_axis),
+        speed: defined(3, moving),
+        flight_path_angle: defined(4, moving.min(end.flight_path_angle.cos())),
+    })
 }
 
-/// Time, longitude, geocentric latitude, speed and flight-path angle at the end of the flight.
-fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS]) -> SVector<Dual, 5> {
+impl Gradient {
+    /// No derivatives.
+    const NONE: Self = Self {
+        mass: f64::NAN,
+        reference_area: f64::NAN,
+        lift_coefficient: f64::NAN,
+        drag_coefficient: f64::NAN,
+        bank_angle: f64::NAN,
+        surface_density: f64::NAN,
+        initial_state: FlightPath {
+            radius: f64::NAN,
+            longitude: f64::NAN,
+            geocentric_latitude: f64::NAN,
+            speed: f64::NAN,
+            flight_path_angle: f64::NAN,
+            heading: f64::NAN,
+        },
+    };
+}
+
+/// The end of the flight: time, longitude, geocentric latitude, speed and flight-path angle.
+type Outputs = SVector<Dual, 5>;
+
+fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool) -> Result<Outputs, IntegrationError> {
     let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = *numbers;
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
     let forces = Forces::new(flight.case.models(), parameters);
     let start = FlightPath::from(start);
     match flight.case.solver.equations {
-        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &Cartesian(forces), &start),
-        Equations::Spherical => arrival_of::<Spherical, _>(flight, &Spherical(forces), &start),
+        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &Cartesian(forces), &start, interrupt),
+        Equations::Spherical => arrival_of::<Spherical, _>(flight, &Spherical(forces), &start, interrupt),
     }
 }
 
@@ -100,11 +140,11 @@ fn arrival_of<F: Formulation, M: System<Dual, 6>>(
     flight: &Trajectory,
     motion: &M,
     start: &FlightPath<Dual>,
-) -> SVector<Dual, 5> {
-    let mut end = follow(motion, F::coordinates(&start.to_planet_fixed()), &flight.steps);
+    interrupt: &AtomicBool,
+) -> Result<Outputs, IntegrationError> {
+    let mut end = follow(motion, F::coordinates(&start.to_planet_fixed()), &flight.steps, interrupt)?;
     let mut time = Dual::from(flight.end_time());
-    let crosses = flight.termination() == Termination::SurfaceImpact && !flight.steps.is_empty();
-    if crosses {
+    if flight.termination() == Termination::SurfaceImpact {
         let rates = motion.derivative(&end);
         let delay = crossing_delay::<F>(&flight.case, &end, &rates);
         time += delay;
@@ -112,7 +152,7 @@ fn arrival_of<F: Formulation, M: System<Dual, 6>>(
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&end));
-    [time, longitude, geocentric_latitude, speed, flight_path_angle].into()
+    Ok([time, longitude, geocentric_latitude, speed, flight_path_angle].into())
 }
 
 /// How much later the stop altitude is crossed as the numbers vary: a step of Newton's method, -h/ḣ, of value zero.

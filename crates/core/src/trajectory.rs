@@ -164,6 +164,11 @@ impl Trajectory {
         }
     }
 
+    /// D/m, m/s², at a point of the flight.
+    pub fn drag_deceleration(&self, point: &FlightPoint) -> f64 {
+        self.case.forces().drag_under(point.loads.dynamic_pressure)
+    }
+
     /// The instants of a sampling, strictly increasing, s.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! How exact a flight is: beside a finer one, and by its balance of energy.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::coordinates::PlanetFixed;
 use crate::motion::Forces;
@@ -11,7 +11,8 @@ use crate::trajectory::Trajectory;
 /// By how much a flight is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verification {
-    /// The tolerance of the finer flight: a hundredth of the flight's, but no finer than there is.
+    /// The tolerance of the finer flight: a hundredth of the flight's, but no finer than there is. Where it is the flight's own,
+    /// both are the same flight, and their difference says nothing.
     pub relative_tolerance: f64,
     /// The final time less that of the finer flight, s.
     pub time_difference: f64,
@@ -33,13 +34,12 @@ pub fn verify(
     interrupt: &AtomicBool,
 ) -> Result<Verification, SimulationError> {
     let relative_tolerance = (scenario.case().solver.relative_tolerance / 100.0).max(Bound::RELATIVE_TOLERANCE.minimum);
-    let finer = arrival(&scenario.with_tolerance(relative_tolerance), interrupt)?;
-    let (energy_drift, drag_work) = energy_balance(flight);
-    let end = flight.last();
+    let finer = arrival(&scenario.finer(relative_tolerance), interrupt)?;
+    let (energy_drift, drag_work) = energy_balance(flight, interrupt)?;
     Ok(Verification {
         relative_tolerance,
-        time_difference: end.time - finer.time,
-        distance: (end.flight_path.to_planet_fixed().position - finer.state.position).norm(),
+        time_difference: flight.end_time() - finer.time,
+        distance: (flight.arrival.state.position - finer.state.position).norm(),
         energy_drift,
         drag_work,
     })
@@ -52,11 +52,14 @@ pub fn verify(
 /// ```
 ///
 /// Lift and the Coriolis force are across the velocity; the energy is Jameson 2006, equation 29, integrated once.
-fn energy_balance(flight: &Trajectory) -> (f64, f64) {
+fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, f64), SimulationError> {
     let forces = flight.case.forces();
     let start = energy(&flight.case, &flight.case.initial_state);
     let (mut drift, mut work): (f64, f64) = (0.0, 0.0);
     for step in &flight.steps {
+        if interrupt.load(Ordering::Relaxed) {
+            return Err(SimulationError::Interrupted { time: step.start_time });
+        }
         let interpolant = flight.interpolant(step);
         let power = |part: f64| drag_power(&forces, &flight.planet_fixed(&interpolant.state(part)));
         let half = step.length() / 2.0;
@@ -66,7 +69,7 @@ fn energy_balance(flight: &Trajectory) -> (f64, f64) {
         let off = energy(&flight.case, &flight.planet_fixed(&step.end)) + work - start;
         drift = drift.max(off.abs());
     }
-    (drift, work)
+    Ok((drift, work))
 }
 
 fn energy(case: &Case, state: &PlanetFixed<f64>) -> f64 {

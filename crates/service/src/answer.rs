@@ -16,20 +16,18 @@ use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
 use crate::wire::sensitivities::Sensitivities;
 use crate::wire::trajectory::{Extras, SimulateResponse};
-use crate::wire::verification::Verification;
 
 /// Flies a case; `interrupt` ends the flight early.
 ///
 /// # Errors
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
-    let wanted = if format == Format::Csv { Wanted::Rows } else { Wanted::Answer };
-    let job = Job::try_from_tree(tree, wanted).map_err(ApiError::Invalid)?;
+    let job = Job::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
     let start = Instant::now();
     let flight = fly(&job.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();
     let points = rows(&job, &flight, row_limit)?;
-    let extras = extras(&job, &flight, format, interrupt)?;
+    let extras = extras(&job, &flight, interrupt)?;
     let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
     Ok(match (format, &response.trajectory) {
         (Format::Csv, Some(trajectory)) => trajectory.to_csv()?,
@@ -37,16 +35,26 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     })
 }
 
-/// What a job asks for beyond the flight; CSV has no place for it.
-fn extras(job: &Job, flight: &Trajectory, format: Format, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
+fn wanted(format: Format) -> Wanted {
+    if format == Format::Csv { Wanted::Rows } else { Wanted::Answer }
+}
+
+/// What a job asks for beyond the flight.
+fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
     let request = &job.request;
-    if format == Format::Csv {
-        return Ok(Extras::default());
+    let mut extras = Extras::default();
+    if request.sensitivities {
+        let core = sensitivities(flight, interrupt)?;
+        extras.sensitivities = Some(Sensitivities::from_core(&core, request.angle_unit));
     }
-    let sensitivities =
-        request.sensitivities.then(|| Sensitivities::from_core(&sensitivities(flight), request.angle_unit));
-    let verification = request.verify.then(|| verify(&job.scenario, flight, interrupt)).transpose()?;
-    Ok(Extras { sensitivities, verification: verification.map(Verification::from) })
+    if request.verify {
+        match verify(&job.scenario, flight, interrupt) {
+            Ok(core) => extras.verification = Some(core.into()),
+            Err(error @ SimulationError::Interrupted { .. }) => return Err(error),
+            Err(error) => extras.unverified = Some(error),
+        }
+    }
+    Ok(extras)
 }
 
 /// The rows for which a job asks.
@@ -73,10 +81,10 @@ pub fn convert(tree: Value) -> Result<Vec<u8>, ApiError> {
 /// # Errors
 /// When the case is not sound, the theory does not apply, and as [`simulate`] otherwise.
 pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
-    let analytic = AnalyticJob::try_from_tree(tree).map_err(ApiError::Invalid)?;
+    let analytic = AnalyticJob::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
     let flight = fly(&analytic.job.scenario, interrupt)?;
     let points = rows(&analytic.job, &flight, row_limit)?.unwrap_or_default();
-    let extras = extras(&analytic.job, &flight, format, interrupt)?;
+    let extras = extras(&analytic.job, &flight, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, extras);
     Ok(if format == Format::Csv { response.to_csv()? } else { serde_json::to_vec(&response)? })
 }

@@ -14,6 +14,9 @@ pub enum ApiError {
     /// The body is not JSON.
     #[error("the body is not JSON: {0}")]
     NotJson(#[from] serde_json::Error),
+    /// A case of a list is not JSON.
+    #[error("the case is not JSON: {0} of the case")]
+    CaseNotJson(serde_json::Error),
     /// The query string has something that it should not have.
     #[error("{0}")]
     BadQuery(String),
@@ -125,7 +128,7 @@ impl ApiError {
         use SimulationError::{Interrupted, Overflow, Singularity, StepLimit, TooStiff};
         use StatusCode as Status;
         match self {
-            Self::NotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
+            Self::NotJson(_) | Self::CaseNotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
             Self::BadQuery(_) => (Status::BAD_REQUEST, "/problems/invalid-query", "Invalid query string"),
             Self::UnreadableBody(_) => (Status::BAD_REQUEST, "/problems/unreadable-body", "Unreadable body"),
             Self::BodyTimeout { .. } => (Status::REQUEST_TIMEOUT, "/problems/request-timeout", "Body too slow"),

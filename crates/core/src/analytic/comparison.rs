@@ -2,7 +2,10 @@
 
 use super::{End, Prediction, Theory};
 use crate::root;
-use crate::trajectory::{FlightPoint, Trajectory};
+use crate::trajectory::{FlightPoint, Sampling, Trajectory};
+
+/// Where a step is looked at for what a theory has to say: at so many parts of it.
+const LOOKS_A_STEP: usize = 8;
 
 /// A theory beside a flight.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,35 +31,44 @@ pub struct Validity {
 }
 
 impl Theory {
-    /// What the theory predicts at points of the flight, in ascending order of time with both ends among them.
+    /// What the theory predicts at points of the flight, in ascending order of time.
     pub fn compare(&self, flight: &Trajectory, points: &[FlightPoint]) -> Comparison {
-        let mut results: Vec<_> = points.iter().map(|point| self.prediction(point)).collect();
+        let (validity, until) = self.validity(flight);
+        let predictions = points.iter().map(|point| match self.prediction(point) {
+            Ok(prediction) if point.time <= until => prediction,
+            _ => Prediction::default(),
+        });
+        Comparison { predictions: predictions.collect(), validity }
+    }
+
+    /// Where the theory holds, and until when, s; it is looked at within the steps of the flight, whatever rows are wanted.
+    fn validity(&self, flight: &Trajectory) -> (Validity, f64) {
+        let instants = flight.instants(&Sampling::PerStep(LOOKS_A_STEP), usize::MAX).unwrap_or_default();
+        let points = flight.points(&instants);
+        let results: Vec<_> = points.iter().map(|point| self.prediction(point)).collect();
         let over = End::Flight(flight.termination());
         let Some(first) = results.iter().position(Result::is_ok) else {
             let end = results.first().and_then(|result| result.err()).unwrap_or(over);
-            let validity = Validity { from_altitude: None, to_altitude: None, end };
-            return Comparison { predictions: vec![Prediction::default(); points.len()], validity };
+            return (Validity { from_altitude: None, to_altitude: None, end }, f64::NEG_INFINITY);
         };
         let next = if self.solution.descends() {
             results.iter().skip(first).position(Result::is_err).map_or(results.len(), |run| first + run)
         } else {
             results.iter().rposition(Result::is_ok).map_or(first, |last| last + 1)
         };
-        let (from, _) = self.edge(flight, points, first);
-        let (to, end) = self.edge(flight, points, next);
-        let validity = Validity { from_altitude: from, to_altitude: to, end: end.unwrap_or(over) };
-        results.truncate(next);
-        let mut predictions: Vec<_> = results.into_iter().map(Result::unwrap_or_default).collect();
-        predictions.resize(points.len(), Prediction::default());
-        Comparison { predictions, validity }
+        let (from, _) = self.edge(flight, &points, first);
+        let (to, end) = self.edge(flight, &points, next);
+        let altitude = |time: f64| Some(flight.at(time).loads.altitude).filter(|altitude| altitude.is_finite());
+        let validity = Validity { from_altitude: altitude(from), to_altitude: altitude(to), end: end.unwrap_or(over) };
+        (validity, to)
     }
 
-    /// The altitude between the point before `index` and that at `index` at which the theory begins or ends to give numbers,
+    /// The time, s, between the point before `index` and that at `index` at which the theory begins or ends to give numbers,
     /// and why it gives none beyond; at the ends of the flight there is no such reason.
-    fn edge(&self, flight: &Trajectory, points: &[FlightPoint], index: usize) -> (Option<f64>, Option<End>) {
+    fn edge(&self, flight: &Trajectory, points: &[FlightPoint], index: usize) -> (f64, Option<End>) {
         let (Some(before), Some(after)) = (index.checked_sub(1).and_then(|i| points.get(i)), points.get(index)) else {
             let end = if index == 0 { points.first() } else { points.last() };
-            return (end.map(|point| point.loads.altitude), None);
+            return (end.map_or(0.0, |point| point.time), None);
         };
         let mut reason = None;
         // A function of two values: the root is found by bisection, to the resolution of the time, whatever the reason.
@@ -69,7 +81,6 @@ impl Theory {
         };
         let ends = [before, after].map(|point| (point.time, holds(point)));
         let time = root::bracketed(|time| holds(&flight.at(time)), ends[0], ends[1], 0.0);
-        let altitude = flight.at(time).loads.altitude;
-        (Some(altitude).filter(|altitude| altitude.is_finite()), reason)
+        (time, reason)
     }
 }

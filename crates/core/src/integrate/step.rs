@@ -1,7 +1,9 @@
 //! One step of the method, and the state inside it.
 
-use super::System;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::tableau::{self, Row};
+use super::{IntegrationError, System};
 use crate::scalar::{Lanes, Scalar};
 
 /// Evaluations of the derivative for a trial step.
@@ -175,13 +177,22 @@ impl<const N: usize> Interpolant<N> {
 
 /// The state at the end of steps that were taken before, from another start: the numbers may carry derivatives, which then are those
 /// of the end by what varies at the start and in the system. The steps are not chosen anew, so that their choice adds nothing.
+///
+/// # Errors
+/// When the flag is raised, at which it looks before every step.
 pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
     start: [S; N],
     steps: &[Step<N>],
-) -> [S; N] {
+    interrupt: &AtomicBool,
+) -> Result<[S; N], IntegrationError> {
     let system = &Once(system);
-    steps.iter().fold(start, |state, step| attempt(system, &state, &system.derivative(&state), step.length()).end)
+    steps.iter().try_fold(start, |state, step| {
+        if interrupt.load(Ordering::Relaxed) {
+            return Err(IntegrationError::Interrupted { time: step.start_time });
+        }
+        Ok(attempt(system, &state, &system.derivative(&state), step.length()).end)
+    })
 }
 
 /// A system whose derivative stands in the program once, not in every stage: in wide numbers it is long.

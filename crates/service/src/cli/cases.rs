@@ -16,6 +16,7 @@ use crate::compute;
 use crate::error::{ApiError, FieldError};
 use crate::format::Format;
 use crate::wire::json;
+use crate::wire::reader::Fault;
 
 /// A file with cases, and what is to become of them.
 #[derive(Args, Debug)]
@@ -99,6 +100,9 @@ impl<A: Answer> Run<A> {
         let text = states.read()?;
         let mut output = Output::new(states.output.as_deref());
         match json::elements(&text) {
+            Ok(Some(cases)) if cases.is_empty() => {
+                Err(self.failed(&ApiError::Invalid(vec![Fault::new("", "must have at least 1 case, got none")])))
+            }
             Ok(Some(cases)) => self.many(&cases, &mut output),
             Ok(None) => self.one(&text, &mut output),
             Err(error) => Err(self.failed(&error.into())),
@@ -106,7 +110,8 @@ impl<A: Answer> Run<A> {
     }
 
     fn one(&self, text: &[u8], output: &mut Output) -> Result<(), Failure> {
-        let answer = self.answer(text, &AtomicBool::new(false)).map_err(|error| self.failed(&error))?;
+        let tree = json::parse(text).map_err(|error| self.failed(&error.into()))?;
+        let answer = self.answer(tree, &AtomicBool::new(false)).map_err(|error| self.failed(&error))?;
         output.write(&with_line_end(answer)).map(drop)
     }
 
@@ -114,7 +119,10 @@ impl<A: Answer> Run<A> {
         let bar = progress(cases.len(), output);
         let mut ending = Ok(());
         let mut header = Header::Wanted;
-        let work = |case: &&RawValue, interrupt: &AtomicBool| self.answer(case.get().as_bytes(), interrupt);
+        let work = |case: &&RawValue, interrupt: &AtomicBool| {
+            let tree = json::parse(case.get().as_bytes()).map_err(ApiError::CaseNotJson)?;
+            self.answer(tree, interrupt)
+        };
         compute::in_order(cases, work, |index, answer| {
             bar.inc(1);
             if let Err(error) = &answer {
@@ -141,8 +149,8 @@ impl<A: Answer> Run<A> {
         ending
     }
 
-    fn answer(&self, text: &[u8], interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
-        (self.answer)(json::parse(text)?, self.format, self.row_limit, interrupt)
+    fn answer(&self, tree: Value, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+        (self.answer)(tree, self.format, self.row_limit, interrupt)
     }
 
     fn failed(&self, error: &ApiError) -> Failure {

@@ -1,8 +1,8 @@
 //! `reentry healthcheck`: asks a service whether it runs.
 
-use std::io::{self, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
@@ -18,7 +18,7 @@ pub struct Healthcheck {
     ready: bool,
 }
 
-/// How long the service may take to each part of its answer.
+/// How long the service may take to be reached, and again to answer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 impl Healthcheck {
@@ -51,12 +51,25 @@ fn reachable(mut listen: SocketAddr) -> SocketAddr {
 /// The status line of the answer to a GET request.
 fn status(address: SocketAddr, path: &str) -> io::Result<String> {
     let mut stream = TcpStream::connect_timeout(&address, PATIENCE)?;
-    stream.set_read_timeout(Some(PATIENCE))?;
+    let end = Instant::now() + PATIENCE;
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.write_all(format!("GET {path} HTTP/1.1\r\nhost: {address}\r\nconnection: close\r\n\r\n").as_bytes())?;
-    let mut start = Vec::new();
-    // A status line is far shorter; what talks for ever is not the service.
-    stream.take(1024).read_to_end(&mut start)?;
+    let (mut start, mut part) = (Vec::new(), [0; 256]);
+    // A status line is far shorter than 1024 bytes; what talks for ever is not the service.
+    while !start.contains(&b'\n') && start.len() < 1024 {
+        let left = end.saturating_duration_since(Instant::now());
+        let late = || io::Error::new(ErrorKind::TimedOut, format!("no answer within {} s", PATIENCE.as_secs()));
+        if left.is_zero() {
+            return Err(late());
+        }
+        stream.set_read_timeout(Some(left))?;
+        match stream.read(&mut part) {
+            Ok(0) => break,
+            Ok(count) => start.extend_from_slice(&part[..count]),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => return Err(late()),
+            Err(error) => return Err(error),
+        }
+    }
     Ok(String::from_utf8_lossy(&start).lines().next().unwrap_or_default().to_owned())
 }
 

@@ -44,7 +44,10 @@ pub async fn simulate_batch(
     let cases = app.compute.run(move |_| cases(&body)).await?;
     let row_limit = app.config.row_limit;
     let fly = |case: Bytes| {
-        move |interrupt: &AtomicBool| answer::simulate(json::parse(&case)?, Format::Json, row_limit, interrupt)
+        move |interrupt: &AtomicBool| {
+            let tree = json::parse(&case).map_err(ApiError::CaseNotJson)?;
+            answer::simulate(tree, Format::Json, row_limit, interrupt)
+        }
     };
     let jobs: Vec<_> = cases.into_iter().map(fly).collect();
     let mut left = jobs.len() - 1;

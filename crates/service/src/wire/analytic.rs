@@ -10,7 +10,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
 use super::reader::{self, Fault};
-use super::scenario::{Job, SimulateRequest};
+use super::scenario::{Job, SimulateRequest, Wanted};
 use super::sensitivities::Sensitivities;
 use super::state::State;
 use super::trajectory::{Extras, Warning};
@@ -98,16 +98,18 @@ impl AnalyticJob {
     ///
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
-    pub fn try_from_tree(mut tree: Value) -> Result<Self, Vec<Fault>> {
+    pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
         let AnalyticRequest { solution, case: request } = reader::read(&mut tree, |object| {
             let solution = object.choice("solution", &Solution::NAMES);
             let case = SimulateRequest::read(object);
             Some(AnalyticRequest { solution: solution?, case: case? })
         })?;
         let sampling = request.output.sampling();
-        let rowless = sampling.is_none().then(|| {
-            Fault::new("/output/trajectory", "must not be false: the predictions are made at the rows of the flight")
-        });
+        let mut misplaced = request.beyond_rows(wanted);
+        if sampling.is_none() {
+            let detail = "must not be false: the predictions are made at the rows of the flight";
+            misplaced.push(Fault::new("/output/trajectory", detail));
+        }
         let (scenario, theory) = match request.try_into_scenario() {
             Ok(scenario) => match Theory::new(solution.to_core(), &scenario) {
                 Ok(theory) => (Ok(scenario), Ok(theory)),
@@ -118,14 +120,14 @@ impl AnalyticJob {
                 (Err(faults), Err(solution.to_core().vehicle_faults(&vehicle, &atmosphere)))
             }
         };
-        match (scenario, theory, rowless) {
-            (Ok(scenario), Ok(theory), None) => {
+        match (scenario, theory) {
+            (Ok(scenario), Ok(theory)) if misplaced.is_empty() => {
                 let echo = request.echo.then_some(tree);
                 Ok(Self { job: Job { scenario, sampling, request, echo }, solution, theory })
             }
-            (scenario, theory, rowless) => {
+            (scenario, theory) => {
                 let theory = theory.err().into_iter().flatten().map(|fault| fault_of(&fault, &request));
-                Err(scenario.err().into_iter().flatten().chain(theory).chain(rowless).collect())
+                Err(scenario.err().into_iter().flatten().chain(theory).chain(misplaced).collect())
             }
         }
     }
@@ -233,7 +235,7 @@ pub struct AnalyticResponse {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub sensitivities: Option<Sensitivities>,
-    /// How exact the simulated flight is, with `verify`.
+    /// How exact the simulated flight is, with `verify`; absent with the warning `not_verified` where the finer flight cannot be finished.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub verification: Option<Verification>,
@@ -259,7 +261,7 @@ impl AnalyticResponse {
                 .iter()
                 .map(|point| unit.from_radians(point.flight_path.flight_path_angle))
                 .collect(),
-            drag_deceleration: points.iter().map(|point| theory.drag_deceleration(point)).collect(),
+            drag_deceleration: points.iter().map(|point| flight.drag_deceleration(point)).collect(),
         };
         let column = |value: fn(&Prediction) -> Option<f64>| predictions.iter().map(value).collect();
         let angles: Vec<_> = column(|prediction| prediction.flight_path_angle);
@@ -270,7 +272,7 @@ impl AnalyticResponse {
             flight_path_angle: angles.into_iter().map(|angle| angle.map(|angle| unit.from_radians(angle))).collect(),
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
-        let mut warnings = Warning::of(&request, flight);
+        let mut warnings = Warning::of(&request, flight, &extras);
         if request.control.bank_angle != 0.0 {
             warnings.push(Warning::bank_left_out());
         }

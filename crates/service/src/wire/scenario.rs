@@ -24,13 +24,14 @@ pub struct SimulateRequest {
     /// The unit of every angle in the request and in the answer.
     #[schema(required = false, default = "rad")]
     pub angle_unit: AngleUnit,
-    /// Whether the answer repeats the request, with every default filled in, as `case`.
+    /// Whether the answer repeats the request, with every default filled in, as `case`; CSV has no place for it.
     #[schema(required = false, default = false)]
     pub echo: bool,
-    /// Whether the JSON answer has the derivatives of the flight's end by the numbers of the case; the computing of about six flights.
+    /// Whether the answer has the derivatives of the flight's end by the numbers of the case, for the computing of about six flights.
+    /// Not with CSV.
     #[schema(required = false, default = false)]
     pub sensitivities: bool,
-    /// Whether the JSON answer says how exact the flight is; the computing of about three flights.
+    /// Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV.
     #[schema(required = false, default = false)]
     pub verify: bool,
     /// The instant t = 0: an RFC 3339 time. Where `sidereal_time` is absent, it follows from the Earth rotation angle.
@@ -142,15 +143,14 @@ impl Job {
     pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
         let request = reader::read(&mut tree, SimulateRequest::read)?;
         let sampling = request.output.sampling();
-        let rowless = (wanted == Wanted::Rows && sampling.is_none()).then(|| {
+        let mut misplaced = request.beyond_rows(wanted);
+        if wanted == Wanted::Rows && sampling.is_none() {
             let detail = "must not be false where CSV is asked for, which is nothing but the trajectory";
-            Fault::new("/output/trajectory", detail)
-        });
-        let scenario = match (request.try_into_scenario(), rowless) {
-            (Ok(scenario), None) => scenario,
-            (scenario, rowless) => {
-                return Err(scenario.err().into_iter().flatten().chain(rowless).collect());
-            }
+            misplaced.push(Fault::new("/output/trajectory", detail));
+        }
+        let scenario = match request.try_into_scenario() {
+            Ok(scenario) if misplaced.is_empty() => scenario,
+            scenario => return Err(scenario.err().into_iter().flatten().chain(misplaced).collect()),
         };
         let echo = request.echo.then_some(tree);
         Ok(Self { scenario, sampling, request, echo })
@@ -195,6 +195,14 @@ impl SimulateRequest {
             output: output?,
             solver: solver?,
         })
+    }
+
+    /// What is asked for and has no place where the rows alone are wanted.
+    pub(super) fn beyond_rows(&self, wanted: Wanted) -> Vec<Fault> {
+        let asked = [("/sensitivities", self.sensitivities), ("/verify", self.verify)];
+        let misplaced = asked.into_iter().filter(|(_, asked)| *asked && wanted == Wanted::Rows);
+        let detail = "must not be true where CSV is asked for, which has rows and nothing else";
+        misplaced.map(|(pointer, _)| Fault::new(pointer, detail)).collect()
     }
 
     pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {

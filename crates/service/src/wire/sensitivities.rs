@@ -23,33 +23,46 @@ pub struct Sensitivities {
     pub flight_path_angle: Gradient,
 }
 
-/// The derivatives of one quantity; null where there is none: at a grazing impact, at rest, in vertical flight.
+/// The derivatives of one quantity; null where there is none: at a grazing impact and, of what is undefined there, at the end of a
+/// flight at rest, in vertical flight, or at a pole.
 /// The last six are by the initial state in its `planet_relative` form, with its `radius`.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Gradient {
     /// Per kg.
+    #[schema(required = true)]
     pub mass: Option<f64>,
     /// Per m².
+    #[schema(required = true)]
     pub reference_area: Option<f64>,
     /// Per unit of the coefficient.
+    #[schema(required = true)]
     pub lift_coefficient: Option<f64>,
     /// Per unit of the coefficient.
+    #[schema(required = true)]
     pub drag_coefficient: Option<f64>,
     /// Per radian or degree.
+    #[schema(required = true)]
     pub bank_angle: Option<f64>,
     /// Per kg/m³ at altitude 0.
+    #[schema(required = true)]
     pub surface_density: Option<f64>,
     /// Per m.
+    #[schema(required = true)]
     pub radius: Option<f64>,
     /// Per radian or degree.
+    #[schema(required = true)]
     pub longitude: Option<f64>,
     /// Per radian or degree, at the same radius.
+    #[schema(required = true)]
     pub geocentric_latitude: Option<f64>,
     /// Per m/s.
+    #[schema(required = true)]
     pub speed: Option<f64>,
     /// Per radian or degree.
+    #[schema(required = true)]
     pub flight_path_angle: Option<f64>,
     /// Per radian or degree.
+    #[schema(required = true)]
     pub heading: Option<f64>,
 }
 

@@ -1,6 +1,7 @@
 //! The answer of `/simulate`: its columns, peaks and warnings, as JSON and as CSV.
 
 use reentry::coordinates::UndefinedElements;
+use reentry::simulate::SimulationError;
 use reentry::trajectory::{self, FlightPoint, Peaks as CorePeaks, Termination as CoreTermination, Trajectory};
 use serde::ser::{SerializeMap, SerializeSeq};
 use serde::{Serialize, Serializer};
@@ -254,6 +255,8 @@ pub struct Extras {
     pub sensitivities: Option<Sensitivities>,
     /// With `verify`.
     pub verification: Option<Verification>,
+    /// Why the finer flight of the verification could not be finished.
+    pub unverified: Option<SimulationError>,
 }
 
 /// A finished flight.
@@ -285,7 +288,7 @@ pub struct SimulateResponse {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub sensitivities: Option<Sensitivities>,
-    /// How exact the flight is, with `verify`.
+    /// How exact the flight is, with `verify`; absent with the warning `not_verified` where the finer flight cannot be finished.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub verification: Option<Verification>,
@@ -306,7 +309,7 @@ impl SimulateResponse {
         let unit = request.angle_unit;
         let row = |point| Row { point, unit };
         let statistics = flight.statistics();
-        let warnings = Warning::of(&request, flight);
+        let warnings = Warning::of(&request, flight, &extras);
         Self {
             name: request.name,
             angle_unit: unit,
@@ -358,10 +361,14 @@ impl Warning {
     }
 
     /// What there is to know of a flight and of the request for it.
-    pub fn of(request: &SimulateRequest, flight: &Trajectory) -> Vec<Self> {
+    pub fn of(request: &SimulateRequest, flight: &Trajectory, extras: &Extras) -> Vec<Self> {
         let mut warnings: Vec<_> = flight.warnings().iter().copied().map(Self::of_flight).collect();
         if request.epoch.is_some() && request.initial_state.is_inertial() {
             warnings.push(Self::frame_of_date());
+        }
+        if let Some(error) = extras.unverified {
+            let detail = format!("at a hundredth of its tolerance the flight cannot be finished: {error}");
+            warnings.push(Self::new("not_verified", &detail));
         }
         warnings
     }

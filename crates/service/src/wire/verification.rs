@@ -7,7 +7,8 @@ use utoipa::ToSchema;
 /// How exact the flight is: beside one at a hundredth of its tolerance, and by its balance of energy.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Verification {
-    /// The tolerance of the finer flight: a hundredth of the flight's, but at least 1e-14.
+    /// The tolerance of the finer flight: a hundredth of the flight's, but at least 1e-14. Where it is the flight's own, both are
+    /// the same flight, and the differences of 0 say nothing.
     pub relative_tolerance: f64,
     /// The final time less that of the finer flight, s.
     pub time_difference: f64,
