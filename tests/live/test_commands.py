@@ -1,5 +1,6 @@
 """The commands that need no service: files in, answers out, and the codes with which they end."""
 
+import contextlib
 import csv
 import io
 import json
@@ -7,7 +8,10 @@ import os
 import pty
 import re
 import signal
+import socket
 import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -145,14 +149,36 @@ def test_a_list_of_cases_has_a_line_each_in_order(service, file):
     assert len(told) == 5
 
 
-def test_a_list_of_good_cases_ends_with_0_and_an_empty_one_has_no_lines(file):
+def test_a_list_of_good_cases_ends_with_0(file):
     result = run("simulate", file([CASE, CASE]))
     assert (result.returncode, result.stderr) == (0, "")
     assert len(result.stdout.splitlines()) == 2
-    assert run("simulate", file([])).stdout == ""
     states = run("convert", file([json.loads(Path(STATE).read_text())] * 3))
     assert states.returncode == 0
     assert states.stdout == run("convert", STATE).stdout * 3
+
+
+def test_an_empty_list_is_a_fault_as_it_is_in_a_batch(file):
+    result = run("simulate", path := file([]))
+    assert (result.returncode, result.stdout) == (1, "")
+    assert result.stderr == f"reentry: {path}: Not a valid case: the request has 1 fault\n  must have at least 1 case, got none\n"
+
+
+def test_the_place_of_a_fault_of_json_is_that_in_the_case(file):
+    result = run("simulate", path := file(f'[{json.dumps(CASE)},\n\n{{"name": "a", "name": "b"}}]'))
+    assert result.returncode == 1
+    fault = 'Not JSON: the case is not JSON: duplicate key "name" at line 1 column 18 of the case'
+    assert result.stderr == f"reentry: {path}: case 1: {fault}\n"
+
+
+def test_a_theory_is_set_beside_a_flight(service):
+    case = str(EXAMPLES / "steep_ballistic.json")
+    text = Path(case).read_text()
+    assert run("analytic", case).stdout.encode() == post(service, "/analytic", text) + b"\n"
+    assert run("analytic", case, "-f", "csv").stdout.encode() == post(service, "/analytic?format=csv", text)
+    result = run("analytic", TARGET)
+    assert result.returncode == 1
+    assert "/solution: is required" in result.stderr
 
 
 def test_a_list_as_csv_is_one_table_with_the_number_of_the_case(file):
@@ -237,6 +263,37 @@ def test_the_health_of_a_service_is_asked(start):
     gone = run("healthcheck", REENTRY_LISTEN=f"0.0.0.0:{service.port}")
     assert gone.returncode == 1
     assert f"http://127.0.0.1:{service.port}/health/live does not answer" in gone.stderr
+
+
+def test_a_service_that_talks_for_ever_has_no_health():
+    """Nor does one that says nothing; a good status line is enough, whatever follows."""
+
+    def asked(say):
+        with socket.create_server(("127.0.0.1", 0)) as server, ThreadPoolExecutor() as pool:
+            said = pool.submit(say, server)
+            result = run("healthcheck", "--listen", f"127.0.0.1:{server.getsockname()[1]}")
+            said.result()
+            return result
+
+    def drip(server):
+        client, _ = server.accept()
+        with client, contextlib.suppress(OSError):
+            while True:
+                client.sendall(b"H")
+                time.sleep(0.1)
+
+    def hold(server):
+        client, _ = server.accept()
+        with client:
+            client.sendall(b"HTTP/1.1 200 OK\r\n")
+            # Until the other side has gone.
+            while client.recv(1024):
+                pass
+
+    slow = asked(drip)
+    assert slow.returncode == 1
+    assert "no answer within 2 s" in slow.stderr
+    assert asked(hold).returncode == 0
 
 
 def test_the_program_tells_its_version_its_codes_and_its_document(service):
