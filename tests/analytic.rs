@@ -1,5 +1,7 @@
 //! Theory beside simulation: the thesis's figures, and each solution against the equations that it solves.
 
+use std::sync::atomic::AtomicBool;
+
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use reentry::analytic::{Comparison, End, Fault, Prediction, Solution, Theory};
@@ -44,7 +46,7 @@ fn theory(solution: Solution, case: Case) -> Theory {
 fn compare(solution: Solution, case: Case, rows: usize) -> (Vec<FlightPoint>, Comparison) {
     let flight = fly(case);
     let points = flight.points(&flight.instants(&Sampling::Count(rows), rows).unwrap());
-    let comparison = theory(solution, case).compare(&flight, &points);
+    let comparison = theory(solution, case).compare(&flight, &points, &AtomicBool::new(false)).unwrap();
     (points, comparison)
 }
 
@@ -425,7 +427,7 @@ proptest! {
             let Ok(theory) = Theory::new(solution, &Scenario::new(case).unwrap()) else { continue };
             let flight = fly(case);
             let points = flight.points(&flight.instants(&Sampling::PerStep(2), usize::MAX).unwrap());
-            let Comparison { predictions, validity } = theory.compare(&flight, &points);
+            let Comparison { predictions, validity } = theory.compare(&flight, &points, &AtomicBool::new(false)).unwrap();
             let holds: Vec<_> = predictions.iter().map(|prediction| prediction.flight_path_angle.is_some()).collect();
             prop_assert_eq!(holds.contains(&true), validity.from_altitude.is_some() && validity.to_altitude.is_some());
             prop_assert_eq!(holds.last() == Some(&true), matches!(validity.end, End::Flight(_)));
@@ -480,7 +482,10 @@ fn the_stretch_does_not_depend_on_the_rows() {
         let flight = fly(case);
         let validity = |sampling: Sampling| {
             let instants = flight.instants(&sampling, usize::MAX).unwrap();
-            theory(solution, case).compare(&flight, &flight.points(&instants)).validity
+            theory(solution, case)
+                .compare(&flight, &flight.points(&instants), &AtomicBool::new(false))
+                .unwrap()
+                .validity
         };
         let dense = validity(Sampling::PerStep(64));
         assert_eq!(validity(Sampling::Count(2)), dense, "{solution:?}");
@@ -488,6 +493,16 @@ fn the_stretch_does_not_depend_on_the_rows() {
     }
     let flight = fly(pull_up(0.03, 0.05, -0.1));
     let ends = flight.points(&[0.0, flight.end_time()]);
-    let ending = theory(Solution::MediumGlide, pull_up(0.03, 0.05, -0.1)).compare(&flight, &ends).validity;
+    let ending = theory(Solution::MediumGlide, pull_up(0.03, 0.05, -0.1))
+        .compare(&flight, &ends, &AtomicBool::new(false))
+        .unwrap()
+        .validity;
     assert_eq!(ending.end, End::Climb);
+}
+
+#[test]
+fn the_flag_ends_the_search_for_the_stretch() {
+    let case = table(4, LISTING);
+    let interrupted = theory(Solution::Loh, case).compare(&fly(case), &[], &AtomicBool::new(true));
+    assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));
 }

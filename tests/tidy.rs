@@ -12,8 +12,8 @@ const CORE: [&[&str]; 9] = [
     &["motion"],
     &["scenario"],
     &["trajectory"],
-    &["analytic", "simulate"],
-    &["sensitivity", "verification"],
+    &["simulate"],
+    &["analytic", "sensitivity", "verification"],
 ];
 
 /// The levels of the service.

@@ -85,6 +85,7 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let flight = fly(&analytic.job.scenario, interrupt)?;
     let points = rows(&analytic.job, &flight, row_limit)?.unwrap_or_default();
     let extras = extras(&analytic.job, &flight, interrupt)?;
-    let response = AnalyticResponse::new(analytic, &flight, &points, extras);
+    let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
+    let response = AnalyticResponse::new(analytic, &flight, &points, comparison, extras);
     Ok(if format == Format::Csv { response.to_csv()? } else { serde_json::to_vec(&response)? })
 }

@@ -1,11 +1,16 @@
 //! A theory along a whole flight: its predictions, and the stretch over which it holds.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::{End, Prediction, Theory};
 use crate::root;
+use crate::simulate::SimulationError;
 use crate::trajectory::{FlightPoint, Sampling, Trajectory};
 
 /// Where a step is looked at for what a theory has to say: at so many parts of it.
 const LOOKS_A_STEP: usize = 8;
+/// So many points are looked at before the flag is.
+const LOOKS_AT_ONCE: usize = 1024;
 
 /// A theory beside a flight.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,55 +37,74 @@ pub struct Validity {
 
 impl Theory {
     /// What the theory predicts at points of the flight, in ascending order of time.
-    pub fn compare(&self, flight: &Trajectory, points: &[FlightPoint]) -> Comparison {
-        let (validity, until) = self.validity(flight);
+    ///
+    /// # Errors
+    /// When the flag is raised, at which it looks every few points.
+    pub fn compare(
+        &self,
+        flight: &Trajectory,
+        points: &[FlightPoint],
+        interrupt: &AtomicBool,
+    ) -> Result<Comparison, SimulationError> {
+        let (validity, until) = self.validity(flight, interrupt)?;
         let predictions = points.iter().map(|point| match self.prediction(point) {
             Ok(prediction) if point.time <= until => prediction,
             _ => Prediction::default(),
         });
-        Comparison { predictions: predictions.collect(), validity }
+        Ok(Comparison { predictions: predictions.collect(), validity })
     }
 
     /// Where the theory holds, and until when, s; it is looked at within the steps of the flight, whatever rows are wanted.
-    fn validity(&self, flight: &Trajectory) -> (Validity, f64) {
-        let instants = flight.instants(&Sampling::PerStep(LOOKS_A_STEP), usize::MAX).unwrap_or_default();
-        let points = flight.points(&instants);
-        let results: Vec<_> = points.iter().map(|point| self.prediction(point)).collect();
+    fn validity(&self, flight: &Trajectory, interrupt: &AtomicBool) -> Result<(Validity, f64), SimulationError> {
         let over = End::Flight(flight.termination());
-        let Some(first) = results.iter().position(Result::is_ok) else {
-            let end = results.first().and_then(|result| result.err()).unwrap_or(over);
-            return (Validity { from_altitude: None, to_altitude: None, end }, f64::NEG_INFINITY);
+        let (mut from, mut to, mut first_reason) = (None, None, None);
+        let (mut before, mut holds) = (0.0, false);
+        let instants = flight.instants(&Sampling::PerStep(LOOKS_A_STEP), usize::MAX).unwrap_or_default();
+        // A flight may have so many steps that its points together would fill the memory.
+        'flight: for instants in instants.chunks(LOOKS_AT_ONCE) {
+            if interrupt.load(Ordering::Relaxed) {
+                return Err(SimulationError::Interrupted { time: before });
+            }
+            for point in flight.points(instants) {
+                match self.prediction(&point) {
+                    Ok(_) => {
+                        from = from.or_else(|| Some(self.edge(flight, before, point.time).0));
+                        (holds, to) = (true, None);
+                    }
+                    Err(reason) if !holds => first_reason = first_reason.or(Some(reason)),
+                    Err(_) => {
+                        (holds, to) = (false, Some(self.edge(flight, before, point.time)));
+                        if self.solution.descends() {
+                            break 'flight;
+                        }
+                    }
+                }
+                before = point.time;
+            }
+        }
+        let Some(from) = from else {
+            let end = first_reason.unwrap_or(over);
+            return Ok((Validity { from_altitude: None, to_altitude: None, end }, f64::NEG_INFINITY));
         };
-        let next = if self.solution.descends() {
-            results.iter().skip(first).position(Result::is_err).map_or(results.len(), |run| first + run)
-        } else {
-            results.iter().rposition(Result::is_ok).map_or(first, |last| last + 1)
-        };
-        let (from, _) = self.edge(flight, &points, first);
-        let (to, end) = self.edge(flight, &points, next);
+        let (to, end) = to.map_or((flight.end_time(), over), |(time, reason)| (time, reason.unwrap_or(over)));
         let altitude = |time: f64| Some(flight.at(time).loads.altitude).filter(|altitude| altitude.is_finite());
-        let validity = Validity { from_altitude: altitude(from), to_altitude: altitude(to), end: end.unwrap_or(over) };
-        (validity, to)
+        Ok((Validity { from_altitude: altitude(from), to_altitude: altitude(to), end }, to))
     }
 
-    /// The time, s, between the point before `index` and that at `index` at which the theory begins or ends to give numbers,
-    /// and why it gives none beyond; at the ends of the flight there is no such reason.
-    fn edge(&self, flight: &Trajectory, points: &[FlightPoint], index: usize) -> (f64, Option<End>) {
-        let (Some(before), Some(after)) = (index.checked_sub(1).and_then(|i| points.get(i)), points.get(index)) else {
-            let end = if index == 0 { points.first() } else { points.last() };
-            return (end.map_or(0.0, |point| point.time), None);
-        };
+    /// The time, s, between two at which the theory begins or ends to give numbers, and why it gives none on the one side; where it
+    /// gives numbers at both, the earlier.
+    fn edge(&self, flight: &Trajectory, before: f64, after: f64) -> (f64, Option<End>) {
         let mut reason = None;
         // A function of two values: the root is found by bisection, to the resolution of the time, whatever the reason.
-        let mut holds = |point: &FlightPoint| match self.prediction(point) {
+        let mut holds = |time: f64| match self.prediction(&flight.at(time)) {
             Ok(_) => 1.0,
             Err(end) => {
                 reason = Some(end);
                 -1.0
             }
         };
-        let ends = [before, after].map(|point| (point.time, holds(point)));
-        let time = root::bracketed(|time| holds(&flight.at(time)), ends[0], ends[1], 0.0);
+        let [start, end] = [before, after].map(|time| (time, holds(time)));
+        let time = if start.1 * end.1 < 0.0 { root::bracketed(holds, start, end, 0.0) } else { before };
         (time, reason)
     }
 }

@@ -249,10 +249,16 @@ pub struct AnalyticResponse {
 
 impl AnalyticResponse {
     /// The answer to a job that was flown; `points` are the rows that it asks for.
-    pub fn new(job: AnalyticJob, flight: &Trajectory, points: &[FlightPoint], extras: Extras) -> Self {
-        let AnalyticJob { job: Job { request, echo, .. }, solution, theory } = job;
+    pub fn new(
+        job: AnalyticJob,
+        flight: &Trajectory,
+        points: &[FlightPoint],
+        comparison: Comparison,
+        extras: Extras,
+    ) -> Self {
+        let AnalyticJob { job: Job { request, echo, .. }, solution, .. } = job;
         let unit = request.angle_unit;
-        let Comparison { predictions, validity } = theory.compare(flight, points);
+        let Comparison { predictions, validity } = comparison;
         let simulated = Simulated {
             time: points.iter().map(|point| point.time).collect(),
             altitude: points.iter().map(|point| point.loads.altitude).collect(),
