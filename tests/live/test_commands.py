@@ -167,7 +167,7 @@ def test_an_empty_list_is_a_fault_as_it_is_in_a_batch(file):
 def test_the_place_of_a_fault_of_json_is_that_in_the_case(file):
     result = run("simulate", path := file(f'[{json.dumps(CASE)},\n\n{{"name": "a", "name": "b"}}]'))
     assert result.returncode == 1
-    fault = 'Not JSON: the case is not JSON: duplicate key "name" at line 1 column 18 of the case'
+    fault = 'Not JSON: the case is not JSON: duplicate key "name" at line 1 column 20 of the case'
     assert result.stderr == f"reentry: {path}: case 1: {fault}\n"
 
 
