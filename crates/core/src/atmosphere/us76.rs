@@ -12,8 +12,8 @@
 //! - By the printed constants the density is 8e-6 larger on the upper side of 86 km. The density above is made smaller by that,
 //!   far less than the half unit of its last printed digit. The pressure still steps by 4e-7 of itself.
 //! - Hydrogen, which the standard gives from 150 km on, steps the density there by 3e-7 and the pressure by 7e-6 of itself.
-//! - The standard has a speed of sound below 86 km only. Its equation 50 is √(γ p/ρ), γ = 1.4, and is taken at all altitudes;
-//!   where the air is no continuum it is a unit of speed and no more.
+//! - The standard has a speed of sound below 86 km only. Above, it is √(γ R* T/M₀) of the kinetic temperature, as if the air were
+//!   still mixed: a unit of speed and no more, which begins 2e-4 of itself lower.
 //! - Above 1000 km the density falls on by the scale height that it has there, the mean molecular weight stays, and the temperature
 //!   goes on towards 1000 K. Below -5 km the lowest layer continues.
 //! - Down from half the Earth's radius and up from 10⁸ m, where only trial stages of an integrator come, the air stays as it is there:
@@ -82,23 +82,22 @@ pub fn density<S: Scalar>(altitude: S) -> S {
 ///
 /// ```text
 /// p = ρ R* T_M/M₀,  T_M = T M₀/M                   (42, 22)
-/// C_s = √(γ R* T_M/M₀)                             (50)
+/// C_s = √(γ R* T_M/M₀)                             (50), above 86 km with T in place of T_M
 /// ```
 #[inline(always)]
 pub fn sample<S: Scalar>(altitude: S) -> AtmosphereSample<S> {
     let place = Place::of(altitude);
     let density = place.density();
     let molecular_scale_temperature = place.molecular_scale_temperature();
-    let pressure_over_density = molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT);
+    let mixed = place.altitude.less_than(MIXED_TOP);
+    let in_mixed_air = molecular_scale_temperature * weight_ratio(place.altitude);
+    let temperature = S::select(mixed, in_mixed_air, thermosphere(place.altitude));
+    let of_sound = S::select(mixed, molecular_scale_temperature, temperature);
     AtmosphereSample {
         density,
-        temperature: S::select(
-            place.altitude.less_than(MIXED_TOP),
-            molecular_scale_temperature * weight_ratio(place.altitude),
-            thermosphere(place.altitude),
-        ),
-        pressure: density * pressure_over_density,
-        speed_of_sound: (pressure_over_density * HEAT_RATIO).sqrt(),
+        temperature,
+        pressure: density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT),
+        speed_of_sound: (of_sound * (HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT)).sqrt(),
     }
 }
 
