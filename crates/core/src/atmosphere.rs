@@ -1,5 +1,7 @@
 //! The atmosphere: density by altitude.
 
+pub mod us76;
+
 use crate::scalar::Scalar;
 
 /// A model of the atmosphere, which turns with the planet.
@@ -15,6 +17,19 @@ pub enum Atmosphere {
         /// H = 1/β, the height over which the density falls by e, m.
         scale_height: f64,
     },
+}
+
+/// The air at an altitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtmosphereSample<S> {
+    /// kg/m³.
+    pub density: S,
+    /// The kinetic temperature, K.
+    pub temperature: S,
+    /// Pa.
+    pub pressure: S,
+    /// m/s.
+    pub speed_of_sound: S,
 }
 
 impl Atmosphere {

@@ -51,6 +51,9 @@ pub trait Scalar:
     /// `chosen` where the mask holds, `otherwise` where it does not.
     fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
 
+    /// What a table holds for the value: a row of numbers without derivatives, each lane its own.
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K];
+
     /// One over the number.
     #[must_use]
     fn recip(self) -> Self;
@@ -62,6 +65,10 @@ pub trait Scalar:
     /// e to the power of `self`.
     #[must_use]
     fn exp(self) -> Self;
+
+    /// The natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
 
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
@@ -99,6 +106,11 @@ where
     }
 
     #[inline(always)]
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        row(self.re()).map(Self::from)
+    }
+
+    #[inline(always)]
     fn recip(self) -> Self {
         DualNum::recip(&self)
     }
@@ -111,6 +123,11 @@ where
     #[inline(always)]
     fn exp(self) -> Self {
         DualNum::exp(&self)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        DualNum::ln(&self)
     }
 
     #[inline(always)]

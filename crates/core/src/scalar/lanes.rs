@@ -121,6 +121,12 @@ impl<const L: usize> Scalar for Lanes<L> {
     }
 
     #[inline(always)]
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        let rows = self.0.map(row);
+        from_fn(|k| Self(from_fn(|lane| rows[lane][k])))
+    }
+
+    #[inline(always)]
     fn recip(self) -> Self {
         self.map(f64::recip)
     }
@@ -133,6 +139,11 @@ impl<const L: usize> Scalar for Lanes<L> {
     #[inline(always)]
     fn exp(self) -> Self {
         self.map(f64::exp)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.map(f64::ln)
     }
 
     #[inline(always)]
