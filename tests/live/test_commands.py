@@ -53,6 +53,13 @@ def test_the_answer_is_that_of_the_service(service):
     assert run("convert", STATE).stdout.encode() == post(service, "/convert", Path(STATE).read_text()) + b"\n"
 
 
+def test_a_state_is_json_and_no_table():
+    assert run("convert", STATE, "--format", "json").stdout == run("convert", STATE).stdout
+    refused = run("convert", STATE, "--format", "csv")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert "possible values: json" in refused.stderr
+
+
 def test_a_minus_is_standard_input():
     result = subprocess.run(
         [BINARY, "simulate", "-", "-f", "csv"], input=Path(TARGET).read_bytes(), capture_output=True, timeout=PATIENCE

@@ -39,7 +39,15 @@ pub enum Command {
     Analytic(Cases),
     /// Write a state in every coordinate system, or each of a list of states: the JSON of POST /convert
     #[command(after_help = [CONVERT_EXAMPLES, EXIT_CODES].concat())]
-    Convert(States),
+    Convert {
+        /// The states.
+        #[command(flatten)]
+        states: States,
+
+        /// What is written; a state is no table and comes as JSON alone
+        #[arg(long, short, value_parser = ["json"], default_value = "json")]
+        format: String,
+    },
     /// Ask the service of this machine whether it runs, for containers that have no other program to ask with
     Healthcheck(Healthcheck),
     /// Print the OpenAPI document
@@ -142,7 +150,7 @@ impl Command {
             Self::Serve(config) => Ok(serve(config)?),
             Self::Simulate(cases) => cases.run(answer::simulate),
             Self::Analytic(cases) => cases.run(answer::analytic),
-            Self::Convert(states) => states.run(|tree, _, _, _| answer::convert(tree)),
+            Self::Convert { states, .. } => states.run(|tree, _, _, _| answer::convert(tree)),
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;
                 Output::Standard.write(b"ok\n").map(drop)
