@@ -19,6 +19,7 @@ use std::fmt;
 
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::FlightPath;
+use crate::motion::Parameters;
 use crate::scenario::Scenario;
 use crate::trajectory::{FlightPoint, Termination};
 use crate::vehicle::{Aerodynamics, Vehicle};
@@ -132,8 +133,8 @@ pub struct AnalyticError(pub Vec<Fault>);
 impl Solution {
     /// What in a vehicle and its air keeps the theory from applying.
     pub fn vehicle_faults(self, vehicle: &Vehicle, atmosphere: &Atmosphere) -> Vec<Fault> {
-        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = vehicle.aerodynamics;
-        let Atmosphere::Exponential { surface_density, .. } = *atmosphere;
+        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = vehicle.aerodynamics else { return vec![] };
+        let Atmosphere::Exponential { surface_density, .. } = *atmosphere else { return vec![] };
         let ballistic = self == Self::SteepBallistic;
         let faults = [
             (!ballistic && lift_coefficient == 0.0).then_some(Fault::NoLift),
@@ -180,12 +181,12 @@ impl Theory {
     /// With everything that keeps the theory from applying.
     pub fn new(solution: Solution, scenario: &Scenario) -> Result<Self, AnalyticError> {
         let case = scenario.case();
-        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = case.vehicle.aerodynamics;
+        let Parameters { mass, reference_area, lift_coefficient, drag_coefficient, .. } = case.parameters();
         let entry = FlightPath::from_planet_fixed(&case.initial_state);
         let beta = case.atmosphere.scale_height().recip();
         let r0 = case.planet.equatorial_radius();
         // (76) η = ρSC_D / (2mβ)
-        let eta_by_density = case.vehicle.reference_area * drag_coefficient / (2.0 * case.vehicle.mass * beta);
+        let eta_by_density = reference_area * drag_coefficient / (2.0 * mass * beta);
         let eta_e = eta_by_density * case.forces().loads(&case.initial_state).density;
 
         let mut faults = solution.vehicle_faults(&case.vehicle, &case.atmosphere);

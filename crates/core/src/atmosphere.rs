@@ -1,12 +1,27 @@
-//! The atmosphere: density by altitude.
+//! The atmosphere: density by altitude, and what else a model knows of the air.
 
+mod layers;
+mod table;
 pub mod us76;
+
+pub use layers::{Layer, Layers};
+pub use table::Table;
+
+use std::sync::Arc;
 
 use crate::scalar::Scalar;
 
-/// A model of the atmosphere, which turns with the planet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A model of the atmosphere, by the altitude along the radius vector; it turns with the planet.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Atmosphere {
+    /// No air.
+    Vacuum,
+    /// The U.S. Standard Atmosphere, 1976.
+    Us76,
+    /// Layers of one scale height each.
+    Layers(Arc<Layers>),
+    /// A table.
+    Table(Arc<Table>),
     /// ρ = ρ₀ e^(-h/H).
     ///
     /// # Reference
@@ -24,12 +39,12 @@ pub enum Atmosphere {
 pub struct AtmosphereSample<S> {
     /// kg/m³.
     pub density: S,
-    /// The kinetic temperature, K.
-    pub temperature: S,
-    /// Pa.
-    pub pressure: S,
-    /// m/s.
-    pub speed_of_sound: S,
+    /// The kinetic temperature, K, if the model has one.
+    pub temperature: Option<S>,
+    /// Pa, if the model has one.
+    pub pressure: Option<S>,
+    /// m/s, if the model has a temperature.
+    pub speed_of_sound: Option<S>,
 }
 
 impl Atmosphere {
@@ -42,11 +57,32 @@ impl Atmosphere {
     /// the density grows no more: there it is e⁷⁰⁰ times its surface value, and further down no number would hold it.
     #[inline(always)]
     pub fn density<S: Scalar>(&self, altitude: S) -> S {
-        let Self::Exponential { surface_density, scale_height } = *self;
+        let (surface_density, scale_height) = match *self {
+            Self::Exponential { surface_density, scale_height } => (surface_density, scale_height),
+            _ => (0.0, 6935.0),
+        };
         // Of a subnormal scale height the reciprocal would be infinite, and its product with no altitude no number.
         let height = altitude * scale_height.recip().min(f64::MAX);
         let clamped = S::select(height.less_than(-700.0), S::from(-700.0), height);
         (-clamped).exp() * surface_density
+    }
+
+    /// Whether the model has a temperature, and with it a speed of sound.
+    pub fn has_temperature(&self) -> bool {
+        match self {
+            Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,
+            Self::Us76 => true,
+            Self::Table(table) => table.has_temperature(),
+        }
+    }
+
+    /// Whether the model has a pressure.
+    pub fn has_pressure(&self) -> bool {
+        match self {
+            Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,
+            Self::Us76 => true,
+            Self::Table(table) => table.has_pressure(),
+        }
     }
 
     /// The altitude, m, above which the air is so thin (e⁻³⁷ ≈ 10⁻¹⁶ of the surface's) that an integrator may not notice it coming.
@@ -56,7 +92,9 @@ impl Atmosphere {
 
     /// The height, m, over which the density changes by e.
     pub fn scale_height(&self) -> f64 {
-        let Self::Exponential { scale_height, .. } = *self;
-        scale_height
+        match *self {
+            Self::Exponential { scale_height, .. } => scale_height,
+            _ => 6935.0,
+        }
     }
 }

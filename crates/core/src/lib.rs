@@ -18,7 +18,7 @@
 //! ```
 //! use std::sync::atomic::AtomicBool;
 //!
-//! use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop, Vehicle, simulate};
+//! use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Vehicle, Wind, simulate};
 //!
 //! let entry = FlightPath {
 //!     radius: 6_500_140.0,
@@ -31,12 +31,14 @@
 //! let case = Case {
 //!     planet: Planet::EARTH_WGS84.spherical(),
 //!     atmosphere: Atmosphere::EARTH_JAMESON,
+//!     density_factor: 1.0,
+//!     wind: Wind::Still,
 //!     vehicle: Vehicle {
 //!         mass: 700.0,
 //!         reference_area: 0.216_419,
 //!         aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.2, drag_coefficient: 0.2 },
 //!     },
-//!     bank_angle: 0.8,
+//!     control: Control::banked(0.8),
 //!     initial_state: entry.to_planet_fixed(),
 //!     stop: Stop::default(),
 //!     solver: Solver::default(),
@@ -62,19 +64,24 @@ pub mod analytic;
 pub mod motion;
 
 pub mod atmosphere;
+pub mod control;
 pub mod planet;
 pub mod vehicle;
+pub mod wind;
 
 pub mod coordinates;
 
 pub mod integrate;
+pub mod interpolation;
 pub mod root;
 pub mod scalar;
 
 pub use atmosphere::Atmosphere;
+pub use control::Control;
 pub use coordinates::{FlightPath, PlanetFixed};
 pub use planet::Planet;
 pub use scenario::{Case, Scenario, Solver, Stop};
 pub use simulate::simulate;
 pub use trajectory::Trajectory;
 pub use vehicle::{Aerodynamics, Vehicle};
+pub use wind::Wind;

@@ -10,11 +10,13 @@ use nalgebra::Vector3;
 use num_dual::Dual64;
 
 use crate::atmosphere::Atmosphere;
+use crate::control::Control;
 use crate::coordinates::PlanetFixed;
 use crate::integrate::Pace;
 use crate::planet::Planet;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
+use crate::wind::Wind;
 
 /// The unit of the load factor, m/s²: the standard acceleration of gravity (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
@@ -28,7 +30,7 @@ const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
 const DRAG_TIMES_A_STEP: f64 = 1.5;
 
 /// What acts on the vehicle; the parameters may carry derivatives, or belong to several vehicles side by side.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Forces<P = f64> {
     models: Models,
     parameters: Parameters<P>,
@@ -37,14 +39,18 @@ pub struct Forces<P = f64> {
 }
 
 /// What all vehicles side by side have in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Models {
     /// Where they fly.
     pub planet: Planet,
     /// The air, which turns with the planet.
     pub atmosphere: Atmosphere,
+    /// How the air moves against the planet.
+    pub wind: Wind,
     /// The coefficients.
     pub aerodynamics: Aerodynamics,
+    /// The angles at which the vehicle flies.
+    pub control: Control,
 }
 
 /// The numbers that may vary, beside the state.
@@ -72,7 +78,11 @@ pub struct Loads<S> {
     pub altitude: S,
     /// kg/m³.
     pub density: S,
-    /// ½ρV², Pa.
+    /// Relative to the air, m/s.
+    pub air_speed: S,
+    /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
+    pub mach: Option<S>,
+    /// ½ρV² of the speed relative to the air, Pa.
     pub dynamic_pressure: S,
     /// -dV/dt of the relative speed, m/s²; at rest minus the magnitude of the acceleration.
     pub deceleration: S,
@@ -254,7 +264,7 @@ impl Forces {
         // The squares of coefficients, since those of tiny forces would vanish.
         let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
         let load_factor = dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY);
-        Loads { altitude, density, dynamic_pressure, deceleration, load_factor }
+        Loads { altitude, density, air_speed: speed, mach: None, dynamic_pressure, deceleration, load_factor }
     }
 }
 

@@ -1,5 +1,9 @@
 //! The planet: its shape, gravity and rotation.
 
+mod gravity;
+
+pub use gravity::{Gravity, Zonal};
+
 use crate::scalar::{Scalar, length};
 use nalgebra::Vector3;
 
@@ -71,11 +75,13 @@ impl Shape {
     }
 }
 
-/// A rotating planet whose gravity is that of a point at its centre.
+/// A rotating planet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planet {
     /// The surface.
     pub shape: Shape,
+    /// How gravity falls off.
+    pub gravity: Gravity,
     /// Acceleration of gravity times the radius squared, m³/s².
     pub gravitational_parameter: f64,
     /// The parameter by which orbital elements are converted, m³/s²; the thesis uses a slightly different one than for its gravity.
@@ -101,6 +107,7 @@ impl Planet {
             equatorial_radius: EARTH_RADIUS,
             polar_radius: EARTH_RADIUS * (1.0 - 1.0 / 298.257_223_563),
         },
+        gravity: Gravity::InverseSquare,
         gravitational_parameter: 3.986_004_418e14,
         orbital_gravitational_parameter: 3.986_004_418e14,
         rotation_rate: 7.292_115e-5,
@@ -109,6 +116,7 @@ impl Planet {
     /// The Earth of the thesis's program listing, with which its results were made: g₀ = 9.798 m/s².
     pub const EARTH_JAMESON_LISTING: Self = Self {
         shape: Shape::Ellipsoid { equatorial_radius: EARTH_RADIUS, polar_radius: JAMESON_POLAR_RADIUS },
+        gravity: Gravity::InverseSquare,
         gravitational_parameter: 9.798 * EARTH_RADIUS * EARTH_RADIUS,
         orbital_gravitational_parameter: JAMESON_ORBITAL_PARAMETER,
         rotation_rate: 7.292_115_146_7e-5,

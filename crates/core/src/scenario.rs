@@ -6,10 +6,12 @@ use std::fmt;
 use num_dual::Dual2_64;
 
 use crate::atmosphere::Atmosphere;
+use crate::control::{Against, Command, Control};
 use crate::coordinates::PlanetFixed;
 use crate::motion::{Forces, Models, Parameters};
-use crate::planet::Planet;
+use crate::planet::{Gravity, Planet, Zonal};
 use crate::vehicle::{Aerodynamics, Vehicle};
+use crate::wind::Wind;
 
 /// The values that a number may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +27,9 @@ pub struct Bound {
 impl Bound {
     /// Every finite number.
     pub const FINITE: Self = Self::between(f64::MIN, f64::MAX);
-    /// mass, scale height.
+    /// mass, scale height, ballistic coefficient.
     pub const POSITIVE: Self = Self::above(0.0, f64::MAX);
-    /// reference area, density, drag coefficient, eccentricity.
+    /// reference area, density and its factor, drag coefficient, eccentricity.
     pub const NON_NEGATIVE: Self = Self::between(0.0, f64::MAX);
     /// Speeds, m/s.
     pub const SPEED: Self = Self::between(0.0, 1e6);
@@ -49,6 +51,10 @@ impl Bound {
     pub const GRAVITATIONAL_PARAMETER: Self = Self::between(1e-6, 1e25);
     /// Rotation rates, rad/s.
     pub const ROTATION_RATE: Self = Self::between(-1.0, 1.0);
+    /// Coefficients of zonal harmonics.
+    pub const ZONAL_COEFFICIENT: Self = Self::between(-0.1, 0.1);
+    /// Components of the wind, m/s.
+    pub const WIND: Self = Self::between(-1e4, 1e4);
     /// The time at which a flight ends, s.
     pub const STOP_TIME: Self = Self::above(0.0, 1e9);
     /// The relative tolerance of the integration.
@@ -148,16 +154,20 @@ impl Default for Solver {
 }
 
 /// The parts of a scenario, not yet checked.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Where it flies.
     pub planet: Planet,
     /// The air.
     pub atmosphere: Atmosphere,
+    /// By how much the air is denser than its model.
+    pub density_factor: f64,
+    /// How the air moves.
+    pub wind: Wind,
     /// What flies.
     pub vehicle: Vehicle,
-    /// σ, rad; see [`Parameters::bank_angle`].
-    pub bank_angle: f64,
+    /// How it is flown.
+    pub control: Control,
     /// The state at t = 0.
     pub initial_state: PlanetFixed<f64>,
     /// When it ends.
@@ -167,7 +177,7 @@ pub struct Case {
 }
 
 /// A sound case: one that exists can be flown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     case: Case,
     on_stop_altitude: Option<Departure>,
@@ -232,6 +242,12 @@ pub enum Fault {
         /// The stop altitude, m.
         stop: f64,
     },
+    /// Something needs a Mach number under an atmosphere that has none.
+    #[error("needs a Mach number, and with it an atmosphere that has a temperature: us76, or a table with one")]
+    NoTemperature {
+        /// What needs it: its place in the [`Case`].
+        field: &'static str,
+    },
     /// The initial acceleration overflows.
     #[error("the initial acceleration is not a finite number")]
     InfiniteAcceleration,
@@ -259,6 +275,7 @@ impl Scenario {
         let altitude = case.planet.shape.altitude(&state.position);
         faults.extend(planet_faults(&case.planet, &case.stop));
         faults.extend(state_faults(state));
+        faults.extend(case.mach_faults());
         if faults.is_empty() {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
@@ -284,7 +301,7 @@ impl Scenario {
     pub(crate) fn finer(&self, relative_tolerance: f64) -> Self {
         let step_limit = self.case.solver.step_limit.saturating_mul(2);
         let solver = Solver { relative_tolerance, step_limit, ..self.case.solver };
-        Self { case: Case { solver, ..self.case }, ..*self }
+        Self { case: Case { solver, ..self.case.clone() }, ..*self }
     }
 
     /// Whether the flight starts on the stop altitude and leaves it upward.
@@ -306,27 +323,67 @@ impl Case {
 
     /// The models, as far as they hold no number of [`parameters`](Self::parameters).
     pub fn models(&self) -> Models {
-        let Atmosphere::Exponential { scale_height, .. } = self.atmosphere;
-        let Aerodynamics::Constant { .. } = self.vehicle.aerodynamics;
+        const NONE: Aerodynamics = Aerodynamics::Constant { lift_coefficient: 0.0, drag_coefficient: 0.0 };
+        const NO_ANGLE: Command = Command::Constant(0.0);
+        let atmosphere = match &self.atmosphere {
+            Atmosphere::Exponential { scale_height, .. } => {
+                Atmosphere::Exponential { surface_density: 1.0, scale_height: *scale_height }
+            }
+            other => other.clone(),
+        };
+        let aerodynamics = match &self.vehicle.aerodynamics {
+            Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => NONE,
+            other => other.clone(),
+        };
+        let Control { bank_angle, angle_of_attack } = self.control.clone();
+        let bank_angle = if matches!(bank_angle, Command::Constant(_)) { NO_ANGLE } else { bank_angle };
         Models {
             planet: self.planet,
-            atmosphere: Atmosphere::Exponential { surface_density: 1.0, scale_height },
-            aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.0, drag_coefficient: 0.0 },
+            atmosphere,
+            wind: self.wind.clone(),
+            aerodynamics,
+            control: Control { bank_angle, angle_of_attack },
         }
     }
 
     /// The numbers that may vary, beside the state.
     pub fn parameters(&self) -> Parameters<f64> {
-        let Atmosphere::Exponential { surface_density, .. } = self.atmosphere;
-        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = self.vehicle.aerodynamics;
-        Parameters {
-            mass: self.vehicle.mass,
-            reference_area: self.vehicle.reference_area,
-            lift_coefficient,
-            drag_coefficient,
-            density: surface_density,
-            bank_angle: self.bank_angle,
+        let Vehicle { mass, reference_area, aerodynamics } = &self.vehicle;
+        let [mass, reference_area, lift_coefficient, drag_coefficient] = match *aerodynamics {
+            Aerodynamics::Constant { lift_coefficient, drag_coefficient } => {
+                [*mass, *reference_area, lift_coefficient, drag_coefficient]
+            }
+            // The ratios are those of a vehicle of this mass with unit area and drag.
+            Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => {
+                [ballistic_coefficient, 1.0, lift_to_drag, 1.0]
+            }
+            Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => [*mass, *reference_area, 0.0, 0.0],
+        };
+        let density = match self.atmosphere {
+            Atmosphere::Exponential { surface_density, .. } => surface_density * self.density_factor,
+            Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => self.density_factor,
+        };
+        let bank_angle = match self.control.bank_angle {
+            Command::Constant(angle) => angle,
+            Command::Schedule(_) => 0.0,
+        };
+        Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle }
+    }
+
+    /// What needs a Mach number where there is none.
+    fn mach_faults(&self) -> Vec<Fault> {
+        if self.atmosphere.has_temperature() {
+            return Vec::new();
         }
+        let by_mach = |command: &Command| matches!(command, Command::Schedule(schedule) if schedule.against() == Against::Mach);
+        let Control { bank_angle, angle_of_attack } = &self.control;
+        let by_table = matches!(self.vehicle.aerodynamics, Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_));
+        let needs = [
+            ("vehicle.aerodynamics.type", by_table),
+            ("control.bank_angle.against", by_mach(bank_angle)),
+            ("control.angle_of_attack.against", by_mach(angle_of_attack)),
+        ];
+        needs.into_iter().filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
     }
 
     /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
@@ -375,26 +432,54 @@ pub fn state_faults(state: &PlanetFixed<f64>) -> Vec<Fault> {
 }
 
 fn out_of_bounds(case: &Case) -> Vec<Fault> {
-    let Case { planet, atmosphere, vehicle, bank_angle, stop, solver, .. } = case;
-    let Atmosphere::Exponential { surface_density, scale_height } = *atmosphere;
-    let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = vehicle.aerodynamics;
+    let Case { planet, atmosphere, density_factor, wind, vehicle, control, stop, solver, .. } = case;
     let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
-    let checks = [
+    let mut checks = vec![
         ("planet.gravitational_parameter", planet.gravitational_parameter, Bound::GRAVITATIONAL_PARAMETER),
         ("planet.equatorial_radius", equatorial_radius, Bound::PLANET_RADIUS),
         ("planet.polar_radius", polar_radius, Bound::PLANET_RADIUS),
         ("planet.rotation_rate", planet.rotation_rate, Bound::ROTATION_RATE),
-        ("atmosphere.surface_density", surface_density, Bound::NON_NEGATIVE),
-        ("atmosphere.scale_height", scale_height, Bound::POSITIVE),
-        ("vehicle.mass", vehicle.mass, Bound::POSITIVE),
-        ("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE),
-        ("vehicle.aerodynamics.lift_coefficient", lift_coefficient, Bound::FINITE),
-        ("vehicle.aerodynamics.drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
-        ("control.bank_angle", *bank_angle, Bound::TURN),
+        ("density_factor", *density_factor, Bound::NON_NEGATIVE),
         ("stop.altitude", stop.altitude, Bound::DISTANCE),
         ("stop.time", stop.time, Bound::STOP_TIME),
         ("solver.relative_tolerance", solver.relative_tolerance, Bound::RELATIVE_TOLERANCE),
     ];
+    if let Gravity::Zonal(Zonal { coefficients: [j2, j3, j4] }) = planet.gravity {
+        checks.extend([
+            ("planet.gravity.j2", j2, Bound::ZONAL_COEFFICIENT),
+            ("planet.gravity.j3", j3, Bound::ZONAL_COEFFICIENT),
+            ("planet.gravity.j4", j4, Bound::ZONAL_COEFFICIENT),
+        ]);
+    }
+    if let Atmosphere::Exponential { surface_density, scale_height } = *atmosphere {
+        checks.extend([
+            ("atmosphere.surface_density", surface_density, Bound::NON_NEGATIVE),
+            ("atmosphere.scale_height", scale_height, Bound::POSITIVE),
+        ]);
+    }
+    if let Wind::Constant { east, north } = *wind {
+        checks.extend([("wind.east", east, Bound::WIND), ("wind.north", north, Bound::WIND)]);
+    }
+    checks.push(("vehicle.mass", vehicle.mass, Bound::POSITIVE));
+    match vehicle.aerodynamics {
+        Aerodynamics::Constant { lift_coefficient, drag_coefficient } => checks.extend([
+            ("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE),
+            ("vehicle.aerodynamics.lift_coefficient", lift_coefficient, Bound::FINITE),
+            ("vehicle.aerodynamics.drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
+        ]),
+        Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => checks.extend([
+            ("vehicle.aerodynamics.ballistic_coefficient", ballistic_coefficient, Bound::POSITIVE),
+            ("vehicle.aerodynamics.lift_to_drag", lift_to_drag, Bound::FINITE),
+        ]),
+        Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => {
+            checks.push(("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE));
+        }
+    }
+    let commands = [("control.bank_angle", &control.bank_angle), ("control.angle_of_attack", &control.angle_of_attack)];
+    checks.extend(commands.into_iter().filter_map(|(field, command)| match command {
+        Command::Constant(angle) => Some((field, *angle, Bound::TURN)),
+        Command::Schedule(_) => None,
+    }));
     let fault = |(field, value, bound): (&'static str, f64, Bound)| {
         (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound })
     };

@@ -106,7 +106,7 @@ fn record<F: Formulation>(
         steps.push(passage.step.clone());
         Ok(())
     })?;
-    Ok(Trajectory { case: *case, start, steps, arrival, peaks: extremes.peaks, warnings: extremes.warnings })
+    Ok(Trajectory { case: case.clone(), start, steps, arrival, peaks: extremes.peaks, warnings: extremes.warnings })
 }
 
 /// Flies to the end and shows every step on the way.

@@ -49,6 +49,8 @@ pub struct Peaks {
     pub dynamic_pressure: Peak,
     /// m.
     pub altitude: Peak,
+    /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
+    pub mach: Option<Peak>,
 }
 
 /// Something about a flight that its user should know.
@@ -59,6 +61,32 @@ pub enum Warning {
         /// s.
         time: f64,
     },
+    /// From this time on a table was asked for more than it holds, and gave what it has at its edge.
+    OutsideTable {
+        /// Which.
+        table: Lookup,
+        /// s.
+        time: f64,
+        /// Along the radius vector, m.
+        altitude: f64,
+        /// The edge of the table: m, rad or a Mach number.
+        edge: f64,
+        /// Whether the flight lies above the edge.
+        above: bool,
+    },
+}
+
+/// A table, and the quantity by which something is looked up in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lookup {
+    /// The atmosphere by altitude; outside, the logarithm of its density goes on in a straight line.
+    Atmosphere,
+    /// The wind by altitude.
+    Wind,
+    /// The aerodynamics by Mach number.
+    Mach,
+    /// The aerodynamics by angle of attack.
+    AngleOfAttack,
 }
 
 /// The instants at which a trajectory is wanted; its start and its end always belong to them.
@@ -95,12 +123,33 @@ pub struct FlightPoint {
     pub geodetic_altitude: f64,
     /// What the air does.
     pub loads: Loads<f64>,
+    /// Of the air, K, Pa and m/s, as far as the atmosphere knows them.
+    pub temperature: Option<f64>,
+    /// Pa.
+    pub pressure: Option<f64>,
+    /// m/s.
+    pub speed_of_sound: Option<f64>,
+    /// σ, rad.
+    pub bank_angle: f64,
+    /// α, rad.
+    pub angle_of_attack: f64,
+    /// The magnitude of the inertial velocity, m/s.
+    pub inertial_speed: f64,
+    /// Of the inertial velocity above the plane normal to the radius, rad.
+    pub inertial_flight_path_angle: f64,
+    /// Half the squared inertial speed and the potential of the planet's gravity, J/kg.
+    pub specific_energy: f64,
+    /// From the initial ground point along its heading, m, on the great circle of the sphere of radius r₀, in half a turn either way;
+    /// none where the flight starts vertically or at rest.
+    pub downrange: Option<f64>,
+    /// To the right of that great circle, m.
+    pub crossrange: Option<f64>,
 }
 
 impl FlightPoint {
     /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
-        let Loads { altitude, density, dynamic_pressure, deceleration, load_factor } = self.loads;
+        let Loads { altitude, density, dynamic_pressure, deceleration, load_factor, .. } = self.loads;
         let path: [f64; 6] = self.flight_path.into();
         let rest = [altitude, density, dynamic_pressure, deceleration, load_factor, self.geodetic_altitude];
         path.iter().chain(&rest).all(|quantity| quantity.is_finite())
@@ -256,7 +305,23 @@ impl Trajectory {
         let flight_path = FlightPath::from_planet_fixed(&state).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &self.case.planet.shape);
         let loads = self.case.forces().loads(&state);
-        FlightPoint { time, flight_path, geodetic_latitude, geodetic_altitude, loads }
+        FlightPoint {
+            time,
+            flight_path,
+            geodetic_latitude,
+            geodetic_altitude,
+            loads,
+            temperature: None,
+            pressure: None,
+            speed_of_sound: None,
+            bank_angle: 0.0,
+            angle_of_attack: 0.0,
+            inertial_speed: 0.0,
+            inertial_flight_path_angle: 0.0,
+            specific_energy: 0.0,
+            downrange: None,
+            crossrange: None,
+        }
     }
 }
 

@@ -1,7 +1,15 @@
 //! The vehicle: its mass and its aerodynamics.
 
+mod alpha_mach_table;
+mod mach_table;
+
+pub use alpha_mach_table::AlphaMachTable;
+pub use mach_table::MachTable;
+
+use std::sync::Arc;
+
 /// Lift and drag coefficients.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Aerodynamics {
     /// The same at every speed.
     Constant {
@@ -10,10 +18,21 @@ pub enum Aerodynamics {
         /// `C_D`.
         drag_coefficient: f64,
     },
+    /// The same at every speed, given by ratios; the mass and the reference area of the vehicle do not matter.
+    Ballistic {
+        /// `m/(C_D S)`, kg/m².
+        ballistic_coefficient: f64,
+        /// `C_L/C_D`.
+        lift_to_drag: f64,
+    },
+    /// By Mach number.
+    MachTable(Arc<MachTable>),
+    /// By angle of attack and Mach number.
+    AlphaMachTable(Arc<AlphaMachTable>),
 }
 
 /// A point mass with lift and drag.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
     /// Mass, kg.
     pub mass: f64,
@@ -36,8 +55,12 @@ impl Aerodynamics {
     /// Lift and drag coefficient.
     #[inline(always)]
     pub fn coefficients(&self) -> Coefficients {
-        let Self::Constant { lift_coefficient, drag_coefficient } = *self;
-        Coefficients { lift: lift_coefficient, drag: drag_coefficient }
+        match *self {
+            Self::Constant { lift_coefficient, drag_coefficient } => {
+                Coefficients { lift: lift_coefficient, drag: drag_coefficient }
+            }
+            _ => Coefficients { lift: 0.0, drag: 0.0 },
+        }
     }
 }
 

@@ -95,9 +95,9 @@ pub fn sample<S: Scalar>(altitude: S) -> AtmosphereSample<S> {
     let of_sound = S::select(mixed, molecular_scale_temperature, temperature);
     AtmosphereSample {
         density,
-        temperature,
-        pressure: density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT),
-        speed_of_sound: (of_sound * (HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT)).sqrt(),
+        temperature: Some(temperature),
+        pressure: Some(density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT)),
+        speed_of_sound: Some((of_sound * (HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT)).sqrt()),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::integrate::{Pace, System};
 use crate::scalar::{Over, Scalar};
 
 /// The state (x, y, z, vx, vy, vz), in m and m/s.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Cartesian<P = f64>(pub Forces<P>);
 
 impl<P: Scalar, S: Over<P>> System<S, 6> for Cartesian<P> {

@@ -6,14 +6,15 @@ use crate::integrate::{Pace, System};
 use crate::scalar::{Over, Scalar};
 
 /// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Spherical<P = f64>(pub Forces<P>);
 
 impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text.
     #[inline(always)]
     fn derivative(&self, coordinates: &[S; 6]) -> [S; 6] {
-        let Forces { models: Models { planet, .. }, sin_cos_bank: (sin_sigma, cos_sigma), .. } = self.0;
+        let Forces { models: Models { planet, .. }, sin_cos_bank: (sin_sigma, cos_sigma), .. } = &self.0;
+        let (sin_sigma, cos_sigma) = (*sin_sigma, *cos_sigma);
         let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
             FlightPath::from(*coordinates);
         let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();

@@ -28,6 +28,7 @@ impl Extremes {
             load_factor: peak(loads.load_factor),
             dynamic_pressure: peak(loads.dynamic_pressure),
             altitude: peak(loads.altitude),
+            mach: None,
         };
         let cone = has_lift.then(|| outside_cone(&state));
         let in_cone = cone.is_some_and(|cone| cone.re < 0.0);
@@ -40,7 +41,7 @@ impl Extremes {
         let end = passage.end();
         let loads = finite_loads(motion.forces(), passage.step.end_time, &end)?;
         let start = std::mem::replace(&mut self.loads, loads);
-        let Peaks { deceleration, load_factor, dynamic_pressure, altitude } = &mut self.peaks;
+        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, .. } = &mut self.peaks;
         let inside = |part| motion.forces().loads(&passage.inside(part));
         let time = |part| passage.step.time(part);
         raise(deceleration, &start, &loads, inside, time, |loads| loads.deceleration);
@@ -84,7 +85,7 @@ fn raise(
 /// The loads, of which every one must be a finite number.
 fn finite_loads(forces: &Forces, time: f64, state: &PlanetFixed<Dual64>) -> Result<Loads<Dual64>, SimulationError> {
     let loads = forces.loads(state);
-    let Loads { altitude, density, dynamic_pressure, deceleration, load_factor } = loads;
+    let Loads { altitude, density, dynamic_pressure, deceleration, load_factor, .. } = loads;
     let finite = [altitude, density, dynamic_pressure, deceleration, load_factor].iter().all(|x| x.re.is_finite());
     if finite { Ok(loads) } else { Err(SimulationError::Overflow { time }) }
 }

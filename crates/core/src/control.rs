@@ -1,0 +1,113 @@
+//! How the vehicle is flown: its bank angle and its angle of attack, constant or by a schedule.
+
+use std::sync::Arc;
+
+use crate::interpolation::{self, TableError};
+use crate::scalar::Scalar;
+
+/// How the vehicle is flown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// σ, rad: 0 lift in the plane of radius and velocity, upward;
+    /// positive tilts it to the left of the flight direction, towards growing heading (Jameson 2006, equation 22).
+    pub bank_angle: Command,
+    /// α, rad, on which coefficients may depend.
+    pub angle_of_attack: Command,
+}
+
+/// An angle during the flight.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// The same all the time, rad.
+    Constant(f64),
+    /// By a schedule.
+    Schedule(Arc<Schedule>),
+}
+
+/// What a schedule runs along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    /// Since the start, s.
+    Time,
+    /// Along the radius vector, m.
+    Altitude,
+    /// Relative to the rotating planet, m/s.
+    Speed,
+    /// The speed relative to the air over that of sound.
+    Mach,
+}
+
+/// What a schedule does between its entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Straight lines.
+    Linear,
+    /// An entry's value holds from it up to the next greater one.
+    Step,
+}
+
+/// An angle along a quantity of the flight; before the first entry and after the last their values hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    against: Against,
+    /// Where the formula changes, ascending.
+    corners: Vec<f64>,
+    /// Of each stretch between corners the value where it begins, rad, and the slope; the first has no beginning but the first corner.
+    stretches: Vec<Stretch>,
+}
+
+/// A straight piece: base + slope (x - origin).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    origin: f64,
+    base: f64,
+    slope: f64,
+}
+
+impl Control {
+    /// Constant angles: the bank angle, rad, and no angle of attack.
+    pub fn banked(bank_angle: f64) -> Self {
+        Self { bank_angle: Command::Constant(bank_angle), angle_of_attack: Command::Constant(0.0) }
+    }
+}
+
+impl Schedule {
+    /// The schedule through the given entries: ascending numbers of the quantity, and angles in rad.
+    ///
+    /// # Errors
+    /// When there are none, not as many of the one as of the other, or they do not ascend.
+    pub fn new(against: Against, at: &[f64], value: &[f64], interpolation: Interpolation) -> Result<Self, TableError> {
+        interpolation::check(at, &[value])?;
+        let level = |base: f64| Stretch { origin: 0.0, base, slope: 0.0 };
+        let (corners, stretches) = match interpolation {
+            Interpolation::Step => (at[1..].to_vec(), value.iter().copied().map(level).collect()),
+            Interpolation::Linear => {
+                let between = at.windows(2).zip(value.windows(2)).map(|(at, value)| Stretch {
+                    origin: at[0],
+                    base: value[0],
+                    slope: (value[1] - value[0]) / (at[1] - at[0]),
+                });
+                let (first, last) = (level(value[0]), level(value[value.len() - 1]));
+                (at.to_vec(), std::iter::once(first).chain(between).chain([last]).collect())
+            }
+        };
+        Ok(Self { against, corners, stretches })
+    }
+
+    /// What it runs along.
+    pub fn against(&self) -> Against {
+        self.against
+    }
+
+    /// Where its formula changes, ascending.
+    pub fn corners(&self) -> &[f64] {
+        &self.corners
+    }
+
+    /// The angle, rad, where the quantity has a value, by the formula of a stretch: 0 before the first corner, 1 after it, and so on.
+    #[inline(always)]
+    pub fn angle<S: Scalar>(&self, stretch: usize, quantity: S) -> S {
+        let Stretch { origin, base, slope } = self.stretches[stretch];
+        (quantity - origin) * slope + base
+    }
+}
