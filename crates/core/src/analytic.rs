@@ -187,7 +187,7 @@ impl Theory {
         let r0 = case.planet.equatorial_radius();
         // (76) η = ρSC_D / (2mβ)
         let eta_by_density = reference_area * drag_coefficient / (2.0 * mass * beta);
-        let eta_e = eta_by_density * case.forces().loads(&case.initial_state).density;
+        let eta_e = eta_by_density * case.forces().loads(0.0, &case.initial_state).density;
 
         let mut faults = solution.vehicle_faults(&case.vehicle, &case.atmosphere);
         if faults.is_empty() && eta_e == 0.0 {
@@ -204,7 +204,7 @@ impl Theory {
             eta_by_density,
             k: lift_coefficient / drag_coefficient,
             beta,
-            g0: case.planet.gravity(r0),
+            g0: case.planet.point_gravity(r0),
             r0,
             speed_e: entry.speed,
             gamma_e: entry.flight_path_angle,

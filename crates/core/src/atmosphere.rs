@@ -56,7 +56,8 @@ impl Atmosphere {
     /// From 700 scale heights below the surface on, where hardly more than trial stages of the integrator come,
     /// the density grows no more: there it is e⁷⁰⁰ times its surface value, and further down no number would hold it.
     #[inline(always)]
-    pub fn density<S: Scalar>(&self, altitude: S) -> S {
+    pub fn density<S: Scalar>(&self, _: usize, altitude: S) -> S {
+        if let Self::Us76 = self { return us76::density(altitude) }
         let (surface_density, scale_height) = match *self {
             Self::Exponential { surface_density, scale_height } => (surface_density, scale_height),
             _ => (0.0, 6935.0),
@@ -65,6 +66,23 @@ impl Atmosphere {
         let height = altitude * scale_height.recip().min(f64::MAX);
         let clamped = S::select(height.less_than(-700.0), S::from(-700.0), height);
         (-clamped).exp() * surface_density
+    }
+
+    /// stub
+    pub fn density_and_sound<S: Scalar>(&self, _: usize, altitude: S) -> (S, S) {
+        let sample = us76::sample(altitude);
+        (sample.density, sample.speed_of_sound.unwrap_or(S::zero()))
+    }
+
+    /// stub
+    pub fn sample<S: Scalar>(&self, layer: usize, altitude: S) -> AtmosphereSample<S> {
+        match self { Self::Us76 => us76::sample(altitude),
+        _ => AtmosphereSample { density: self.density(layer, altitude), temperature: None, pressure: None, speed_of_sound: None } }
+    }
+
+    /// stub
+    pub fn boundaries(&self) -> &[f64] {
+        match self { Self::Us76 => &us76::BOUNDARIES, _ => &[] }
     }
 
     /// Whether the model has a temperature, and with it a speed of sound.

@@ -64,6 +64,21 @@ struct Stretch {
     slope: f64,
 }
 
+impl Command {
+    /// What it runs along and where its formula changes, ascending; nothing where it is constant.
+    pub(crate) fn corners(&self) -> Option<(Against, &[f64])> {
+        match self {
+            Self::Constant(_) => None,
+            Self::Schedule(schedule) => Some((schedule.against, &schedule.corners)),
+        }
+    }
+
+    /// Whether it runs along the Mach number.
+    pub(crate) fn is_by_mach(&self) -> bool {
+        matches!(self, Self::Schedule(schedule) if schedule.against == Against::Mach)
+    }
+}
+
 impl Control {
     /// Constant angles: the bank angle, rad, and no angle of attack.
     pub fn banked(bank_angle: f64) -> Self {
@@ -97,11 +112,6 @@ impl Schedule {
     /// What it runs along.
     pub fn against(&self) -> Against {
         self.against
-    }
-
-    /// Where its formula changes, ascending.
-    pub fn corners(&self) -> &[f64] {
-        &self.corners
     }
 
     /// The angle, rad, where the quantity has a value, by the formula of a stretch: 0 before the first corner, 1 after it, and so on.

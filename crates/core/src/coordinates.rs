@@ -14,11 +14,13 @@
 
 mod flight_path;
 mod geodetic;
+mod great_circle;
 mod inertial;
 mod orbital_elements;
 
 pub use flight_path::FlightPath;
 pub use geodetic::{Geodetic, latitude_and_altitude};
+pub use great_circle::GreatCircle;
 pub use inertial::{Inertial, earth_rotation_angle};
 pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements};
 

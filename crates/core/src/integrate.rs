@@ -15,10 +15,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::scalar::Lanes;
 
-/// A system of `N` ordinary differential equations that do not depend on time.
+/// A system of `N` ordinary differential equations.
 pub trait System<S, const N: usize> {
-    /// The rate of change of each component of the state.
-    fn derivative(&self, state: &[S; N]) -> [S; N];
+    /// The rate of change of each component of the state at a time, s.
+    fn derivative(&self, time: S, state: &[S; N]) -> [S; N];
 }
 
 /// What a system says about the length of its steps.
@@ -27,7 +27,7 @@ pub trait Pace<const N: usize>: System<f64, N> {
     fn magnitudes(&self) -> [f64; N];
 
     /// The longest step that may start here, in seconds: a step must not jump over something that it cannot see.
-    fn longest_step(&self, _state: &[f64; N], _derivative: &[f64; N]) -> f64 {
+    fn longest_step(&self, _time: f64, _state: &[f64; N]) -> f64 {
         f64::INFINITY
     }
 }
@@ -79,27 +79,38 @@ pub struct Limits<'a> {
     pub interrupt: &'a AtomicBool,
 }
 
-/// Advances a state step by step.
+/// Advances the state of a system step by step.
+///
+/// Every call is given the system, which may change from one step to the next; then comes [`restart`](Self::restart).
 #[derive(Debug)]
-pub struct Integrator<'a, F, const N: usize> {
-    system: &'a F,
+pub struct Integrator<'a, const N: usize> {
     control: Control<'a, N>,
     state: [f64; N],
     derivative: [f64; N],
 }
 
-impl<'a, F: Pace<N>, const N: usize> Integrator<'a, F, N> {
+impl<'a, const N: usize> Integrator<'a, N> {
     /// Starts at t = 0 with the given state.
-    pub fn new(system: &'a F, state: [f64; N], limits: Limits<'a>) -> Self {
-        let derivative = system.derivative(&state);
+    pub fn new<F: Pace<N>>(system: &F, state: [f64; N], limits: Limits<'a>) -> Self {
+        let derivative = system.derivative(0.0, &state);
         let mut control = Control::new(system, &state, &derivative, limits);
-        control.shorten(system.longest_step(&state, &derivative));
-        Self { system, control, state, derivative }
+        control.shorten(system.longest_step(0.0, &state));
+        Self { control, state, derivative }
     }
 
     /// What the steps so far cost.
     pub fn statistics(&self) -> Statistics {
         self.control.statistics
+    }
+
+    /// The present time, s.
+    pub fn time(&self) -> f64 {
+        self.control.time
+    }
+
+    /// The present state.
+    pub fn state(&self) -> &[f64; N] {
+        &self.state
     }
 
     /// The rate of change at the present state.
@@ -111,74 +122,96 @@ impl<'a, F: Pace<N>, const N: usize> Integrator<'a, F, N> {
     ///
     /// # Errors
     /// When the limit of steps is reached, no step meets the tolerance, or the flag is raised.
-    pub fn advance(&mut self, end: f64) -> Result<Step<N>, IntegrationError> {
+    pub fn advance<F: Pace<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
         loop {
             let trial_end = self.control.trial_end(end)?;
-            let trial = step::attempt(self.system, &self.state, &self.derivative, self.control.length);
+            let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, self.control.length);
             if self.control.accepts(&self.state, &trial) {
-                let end_derivative = self.system.derivative(&trial.end);
-                return Ok(self.take(trial, trial_end, end_derivative));
+                let end_derivative = system.derivative(trial_end, &trial.end);
+                return Ok(self.take(system, trial, trial_end, end_derivative));
             }
         }
     }
 
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
-    pub fn shorten(&mut self, step: &Step<N>, end: f64) -> Step<N> {
+    pub fn shorten<F: Pace<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
-        let trial = step::attempt(self.system, &self.state, &self.derivative, end - step.start_time);
+        let trial =
+            step::attempt(system, self.control.time, &self.state, &self.derivative, end - step.start_time);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
-        let end_derivative = self.system.derivative(&trial.end);
-        self.take(trial, end, end_derivative)
+        let end_derivative = system.derivative(end, &trial.end);
+        self.take(system, trial, end, end_derivative)
+    }
+
+    /// Goes on from the end of a step with a system that changes there.
+    pub fn restart<F: Pace<N>>(&mut self, system: &F, step: &Step<N>) {
+        (self.control.time, self.state) = (step.end_time, step.end);
+        self.derivative = system.derivative(self.control.time, &self.state);
+        self.control.statistics.evaluations += 1;
+        self.control.shorten(system.longest_step(self.control.time, &self.state));
     }
 
     /// Goes to the end of a trial step.
-    fn take(&mut self, trial: step::Trial<f64, N>, end_time: f64, end_derivative: [f64; N]) -> Step<N> {
+    fn take<F: Pace<N>>(
+        &mut self,
+        system: &F,
+        trial: step::Trial<f64, N>,
+        end_time: f64,
+        end_derivative: [f64; N],
+    ) -> Step<N> {
         let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
         (self.control.time, self.state, self.derivative) = (end_time, step.end, end_derivative);
-        self.control.shorten(self.system.longest_step(&self.state, &self.derivative));
+        self.control.shorten(system.longest_step(end_time, &self.state));
         step
     }
 }
 
-/// Tries a step of each integrator, all computed at once by the `system` of their lanes, to the `ends` at the latest.
+/// Tries a step of each integrator, all computed at once by the `system` of their lanes, to the ends at the latest.
 ///
-/// A lane whose trial meets its tolerance advances by it; the others will try a shorter one the next time. A lane without an
-/// integrator is idle. The steps are those that the integrators would take alone, to the last digit.
+/// Each lane has an integrator, its own system, and its end, s. A lane whose trial meets its tolerance advances by it; the others will
+/// try a shorter one the next time. A lane without an integrator is idle. The steps are those that the integrators would take alone,
+/// to the last digit.
 ///
 /// # Errors
 /// Lane by lane those of [`Integrator::advance`].
 pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: usize>(
     system: &M,
-    mut integrators: [Option<&mut Integrator<'_, F, N>>; L],
-    ends: [f64; L],
+    mut lanes: [Option<(&mut Integrator<'_, N>, &F, f64)>; L],
 ) -> [Option<Result<Step<N>, IntegrationError>>; L] {
-    let trial_ends: [_; L] =
-        from_fn(|lane| integrators[lane].as_mut().map(|integrator| integrator.control.trial_end(ends[lane])));
-    let state = from_fn(|i| abreast(&integrators, |integrator| integrator.state[i]));
-    let derivative = from_fn(|i| abreast(&integrators, |integrator| integrator.derivative[i]));
-    let length = abreast(&integrators, |integrator| integrator.control.length);
-    let trial = step::attempt(&step::Once(system), &state, &derivative, length);
-    let end_derivative = system.derivative(&trial.end);
-    let mut lane = 0..;
-    integrators.map(|integrator| {
-        let lane = lane.next()?;
-        let integrator = integrator?;
-        let trial_end = match trial_ends[lane]? {
+    let trial_ends = lanes.each_mut().map(|lane| {
+        let (integrator, _, end) = lane.as_mut()?;
+        Some(integrator.control.trial_end(*end))
+    });
+    let state = from_fn(|i| abreast(&lanes, |integrator| integrator.state[i]));
+    let derivative = from_fn(|i| abreast(&lanes, |integrator| integrator.derivative[i]));
+    let time = abreast(&lanes, |integrator| integrator.control.time);
+    let length = abreast(&lanes, |integrator| integrator.control.length);
+    let trial = step::attempt(&step::Once(system), time, &state, &derivative, length);
+    let ends = Lanes(from_fn(|lane| match trial_ends[lane] {
+        Some(Ok(end)) => end,
+        _ => 0.0,
+    }));
+    let end_derivative = system.derivative(ends, &trial.end);
+    let mut index = 0..;
+    lanes.map(|lane| {
+        let index = index.next()?;
+        let (integrator, own, _) = lane?;
+        let trial_end = match trial_ends[index]? {
             Ok(trial_end) => trial_end,
             Err(error) => return Some(Err(error)),
         };
-        let trial = trial.lane(lane);
+        let trial = trial.lane(index);
         let accepted = integrator.control.accepts(&integrator.state, &trial);
-        accepted.then(|| Ok(integrator.take(trial, trial_end, end_derivative.map(|rate| rate.0[lane]))))
+        accepted.then(|| Ok(integrator.take(own, trial, trial_end, end_derivative.map(|rate| rate.0[index]))))
     })
 }
 
 /// A number of each integrator.
 fn abreast<F, const N: usize, const L: usize>(
-    integrators: &[Option<&mut Integrator<'_, F, N>>; L],
-    number: impl Fn(&Integrator<'_, F, N>) -> f64,
+    lanes: &[Option<(&mut Integrator<'_, N>, &F, f64)>; L],
+    number: impl Fn(&Integrator<'_, N>) -> f64,
 ) -> Lanes<L> {
-    Lanes(from_fn(|lane| integrators[lane].as_deref().map_or(0.0, &number)))
+    Lanes(from_fn(|lane| lanes[lane].as_ref().map_or(0.0, |(integrator, ..)| number(integrator))))
 }
 
 /// The control of the length of the steps: each as long as the tolerance allows.
@@ -274,9 +307,9 @@ impl<'a, const N: usize> Control<'a, N> {
         };
         let first = norm(slope);
         let guess = if first > 0.0 { 0.01 * norm(state) / first } else { 1e-6 };
-        let guess = guess.min(system.longest_step(state, slope));
+        let guess = guess.min(system.longest_step(0.0, state));
         let euler = from_fn(|i| state[i] + slope[i] * guess);
-        let next_slope = system.derivative(&euler);
+        let next_slope = system.derivative(guess, &euler);
         let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
         let steepest = first.max(second);
         let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };

@@ -1,5 +1,9 @@
 //! Smooth interpolation in tables.
 
+/// The cell in which a table was last looked at.
+#[derive(Clone, Debug, Default)]
+pub struct Hint(std::cell::Cell<usize>);
+
 /// Why numbers are not a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {

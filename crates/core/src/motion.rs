@@ -1,19 +1,24 @@
 //! The equations of motion: the forces, gathered once, and the two formulations that integrate them.
 
 mod cartesian;
+mod regime;
 mod spherical;
 
 pub use cartesian::Cartesian;
+pub use regime::{Lookup, Regime, Switch};
 pub use spherical::Spherical;
+
+pub(crate) use regime::{Chatter, Quantity};
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
 
-use crate::atmosphere::Atmosphere;
-use crate::control::Control;
+use crate::atmosphere::{Atmosphere, AtmosphereSample};
+use crate::control::{Against, Command, Control};
 use crate::coordinates::PlanetFixed;
 use crate::integrate::Pace;
-use crate::planet::Planet;
+use crate::interpolation::Hint;
+use crate::planet::{Planet, Pull};
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
@@ -36,6 +41,19 @@ pub struct Forces<P = f64> {
     parameters: Parameters<P>,
     area_over_mass: P,
     sin_cos_bank: (P, P),
+    regime: Regime,
+    has_switches: bool,
+    /// Whether coefficients or angles depend on the Mach number.
+    by_mach: bool,
+    cells: Cells,
+}
+
+/// Where the tables were last looked at.
+#[derive(Clone, Debug, Default)]
+struct Cells {
+    wind: Hint,
+    mach: Hint,
+    angle_of_attack: Hint,
 }
 
 /// What all vehicles side by side have in common.
@@ -66,8 +84,7 @@ pub struct Parameters<P> {
     pub drag_coefficient: P,
     /// The density over that of the model.
     pub density: P,
-    /// σ, rad: 0 lift in the plane of radius and velocity, upward;
-    /// positive tilts it to the left of the flight direction, towards growing heading (Jameson 2006, equation 22).
+    /// σ less that of the model, rad.
     pub bank_angle: P,
 }
 
@@ -103,6 +120,9 @@ pub trait Formulation: Pace<6> {
 
     /// The forces in its equations.
     fn forces(&self) -> &Forces;
+
+    /// The forces in its equations.
+    fn forces_mut(&mut self) -> &mut Forces;
 }
 
 /// Where the spherical equations divide by zero.
@@ -114,6 +134,18 @@ pub enum Singularity {
     VerticalFlight,
     /// V = 0.
     Rest,
+}
+
+/// The air as it meets the vehicle.
+struct Flow<S: nalgebra::Scalar> {
+    /// Along the radius vector, m.
+    altitude: S,
+    /// Of the position, and of the velocity relative to the air.
+    directions: Directions<S>,
+    /// Relative to the planet, m/s.
+    ground_speed: S,
+    /// The density over that of the parameters, kg/m³, and the Mach number, where something depends on it.
+    density_and_mach: Option<(S, S)>,
 }
 
 /// What a unit of density does to the vehicle, at full lift: accelerations over the density, m⁴/(kg s²).
@@ -129,67 +161,198 @@ impl<P: Scalar> Forces<P> {
     pub fn new(models: Models, parameters: Parameters<P>) -> Self {
         let area_over_mass = parameters.reference_area * parameters.mass.recip();
         let sin_cos_bank = parameters.bank_angle.sin_cos();
-        Self { models, parameters, area_over_mass, sin_cos_bank }
+        let by_mach = models.depend_on_mach();
+        let (regime, has_switches, cells) = (Regime::default(), false, Cells::default());
+        let mut forces =
+            Self { models, parameters, area_over_mass, sin_cos_bank, regime, has_switches, by_mach, cells };
+        forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
+        forces
     }
 
     /// The acceleration relative to the rotating planet, m/s².
     ///
     /// ```text
     /// dv/dt = g(r) + (D + L)/m - 2 ω×v - ω×(ω×r)
-    /// L = L (cos σ n̂ + sin σ b̂),   n̂ = unit(r̂ - (r̂·v̂) v̂),   b̂ = n̂ × v̂
     /// ```
     ///
     /// # Reference
     /// Jameson 2006, equations 17 and 21 to 23, without the step to the vehicle-pointing axes.
     #[inline(always)]
-    pub fn acceleration<S: Over<P>>(&self, state: &PlanetFixed<S>) -> Vector3<S> {
+    pub fn acceleration<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
         let PlanetFixed { position, velocity } = state;
-        let Directions { radius, speed, up, ahead, left, cos_gamma } = Directions::of(state);
-        let air = self.air(speed);
-        let lift = air.lift * lift_fade_over_cosine(cos_gamma);
-        let (sin_bank, cos_bank) = self.sin_cos_bank;
-        let lift_up = lift * cos_bank;
-        let lift_left = lift * sin_bank;
-        let against = air.drag + lift_up * up.dot(&ahead);
-        let gravity = self.models.planet.gravity(radius);
-
+        let flow = self.flow(state);
         let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
-        let mut fall = up.map(|component| component * -gravity);
+        let mut fall = self.models.planet.gravity(flow.directions.radius, &flow.directions.up);
         fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
         fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
-
-        // The density, an exponential, is what all else would wait for.
-        let density = self.density(self.models.planet.shape.altitude(position));
-        Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density + fall[i])
+        self.aerodynamic(time, &flow) + fall
     }
 
-    /// ρ, kg/m³, at an altitude, m.
-    #[inline(always)]
-    fn density<S: Over<P>>(&self, altitude: S) -> S {
-        self.models.atmosphere.density(altitude) * self.parameters.density
-    }
-
-    /// What the air does to a vehicle of a speed, m/s.
+    /// Lift and drag over the mass, m/s².
     ///
     /// ```text
-    /// D = ½ ρ V² S C_D,   L = ½ ρ V² S C_L
+    /// D = -½ ρ V² S C_D v̂,   L = ½ ρ V² S C_L (cos σ n̂ + sin σ b̂),   n̂ = unit(r̂ - (r̂·v̂) v̂),   b̂ = n̂ × v̂
     /// ```
     ///
+    /// with the velocity relative to the air.
+    ///
     /// # Reference
-    /// Jameson 2006, equations 36 and 37.
+    /// Jameson 2006, equations 22, 36 and 37.
     #[inline(always)]
-    fn air<S: Over<P>>(&self, speed: S) -> Air<S> {
-        let acceleration = speed * speed * 0.5 * self.area_over_mass;
-        let (lift_coefficient, drag_coefficient) = self.coefficients();
-        Air { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient }
+    fn aerodynamic<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Vector3<S> {
+        let Directions { up, ahead, left, cos_gamma, .. } = &flow.directions;
+        let air = self.air(time, flow);
+        let lift = air.lift * lift_fade_over_cosine(*cos_gamma);
+        let (sin_bank, cos_bank) = self.sin_cos_bank(time, flow);
+        let (lift_left, lift_up) = (lift * sin_bank, lift * cos_bank);
+        let against = air.drag + lift_up * up.dot(ahead);
+        // The density, an exponential, is what all else would wait for.
+        let density = self.density(flow);
+        Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density)
     }
 
-    /// `C_L` and `C_D`.
+    /// The air that meets a vehicle in a state.
     #[inline(always)]
-    fn coefficients(&self) -> (P, P) {
-        let Coefficients { lift, drag } = self.models.aerodynamics.coefficients();
-        (self.parameters.lift_coefficient + lift, self.parameters.drag_coefficient + drag)
+    fn flow<S: Over<P>>(&self, state: &PlanetFixed<S>) -> Flow<S> {
+        let PlanetFixed { position, velocity } = state;
+        let altitude = self.models.planet.shape.altitude(position);
+        match self.wind(altitude) {
+            None => {
+                let directions = Directions::of(position, velocity);
+                let ground_speed = directions.speed;
+                self.flow_of(altitude, directions, ground_speed)
+            }
+            Some([east, north]) => {
+                let [x, y, z] = [position.x, position.y, position.z];
+                // ẑ × r, of the length of the distance from the axis; at the poles, where there is no east, there is no wind.
+                let over_equatorial = reciprocal_or_one((x * x + y * y).sqrt());
+                let over_radius = reciprocal_or_one(length(position));
+                let east = Vector3::new(-y, x, S::zero()) * (over_equatorial * east);
+                let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
+                let north = to_north * (over_equatorial * over_radius * north);
+                let directions = Directions::of(position, &(velocity - east - north));
+                self.flow_of(altitude, directions, length(velocity))
+            }
+        }
+    }
+
+    /// The air at an altitude, m, that meets a vehicle in the directions of its velocity relative to the air, at a speed relative to
+    /// the planet, m/s.
+    #[inline(always)]
+    fn flow_of<S: Over<P>>(&self, altitude: S, directions: Directions<S>, ground_speed: S) -> Flow<S> {
+        let density_and_mach = self.by_mach.then(|| {
+            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), altitude);
+            (density, directions.speed * sound.recip())
+        });
+        Flow { altitude, directions, ground_speed, density_and_mach }
+    }
+
+    /// The wind at an altitude, m, to the east and to the north, m/s.
+    #[inline(always)]
+    fn wind<S: Over<P>>(&self, altitude: S) -> Option<[S; 2]> {
+        match &self.models.wind {
+            Wind::Still => None,
+            Wind::Constant { east, north } => Some([S::from(*east), S::from(*north)]),
+            Wind::Table(table) => Some(table.velocity(self.regime.of(Switch::Wind), altitude, &self.cells.wind)),
+        }
+    }
+
+    /// ρ, kg/m³.
+    #[inline(always)]
+    fn density<S: Over<P>>(&self, flow: &Flow<S>) -> S {
+        let of_model = match flow.density_and_mach {
+            Some((density, _)) => density,
+            None => self.models.atmosphere.density(self.regime.of(Switch::Atmosphere), flow.altitude),
+        };
+        of_model * self.parameters.density
+    }
+
+    /// What the air does to the vehicle.
+    #[inline(always)]
+    fn air<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Air<S> {
+        let speed = flow.directions.speed;
+        let acceleration = speed * speed * 0.5 * self.area_over_mass;
+        let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
+        match self.coefficients(time, flow) {
+            None => Air { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient },
+            Some(Coefficients { lift, drag }) => {
+                Air { drag: acceleration * (drag + drag_coefficient), lift: acceleration * (lift + lift_coefficient) }
+            }
+        }
+    }
+
+    /// The coefficients of the model, if they are not all in the parameters.
+    #[inline(always)]
+    fn coefficients<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Option<Coefficients<S>> {
+        let [alpha, mach] = [Switch::TableAngleOfAttack, Switch::Mach].map(|switch| self.regime.of(switch));
+        match &self.models.aerodynamics {
+            Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => None,
+            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &self.cells.mach)),
+            Aerodynamics::AlphaMachTable(table) => {
+                let hints = [&self.cells.angle_of_attack, &self.cells.mach];
+                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.mach(), hints))
+            }
+        }
+    }
+
+    /// Sine and cosine of σ.
+    #[inline(always)]
+    fn sin_cos_bank<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
+        match &self.models.control.bank_angle {
+            Command::Constant(_) => {
+                let (sin_bank, cos_bank) = self.sin_cos_bank;
+                (S::zero() + sin_bank, S::zero() + cos_bank)
+            }
+            Command::Schedule(_) => self.bank_angle(time, flow).sin_cos(),
+        }
+    }
+
+    /// σ, rad.
+    #[inline(always)]
+    fn bank_angle<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
+        self.command(&self.models.control.bank_angle, self.regime.of(Switch::BankAngle), time, flow) + self.parameters.bank_angle
+    }
+
+    /// α, rad.
+    #[inline(always)]
+    fn angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
+        self.command(&self.models.control.angle_of_attack, self.regime.of(Switch::AngleOfAttack), time, flow)
+    }
+
+    #[inline(always)]
+    fn command<S: Over<P>>(&self, command: &Command, stretch: usize, time: S, flow: &Flow<S>) -> S {
+        match command {
+            Command::Constant(angle) => S::from(*angle),
+            Command::Schedule(schedule) => schedule.angle(stretch, flow.quantity(schedule.against(), time)),
+        }
+    }
+}
+
+impl Models {
+    /// Whether coefficients or angles depend on the Mach number.
+    fn depend_on_mach(&self) -> bool {
+        let Control { bank_angle, angle_of_attack } = &self.control;
+        self.aerodynamics.is_by_mach() || bank_angle.is_by_mach() || angle_of_attack.is_by_mach()
+    }
+}
+
+impl<S: Scalar> Flow<S> {
+    /// The Mach number, where something depends on it.
+    #[inline(always)]
+    fn mach(&self) -> S {
+        self.density_and_mach.map_or(S::zero(), |(_, mach)| mach)
+    }
+
+    /// What a schedule may run along.
+    #[inline(always)]
+    fn quantity(&self, against: Against, time: S) -> S {
+        match against {
+            Against::Time => time,
+            Against::Altitude => self.altitude,
+            Against::Speed => self.ground_speed,
+            Against::Mach => self.mach(),
+        }
     }
 }
 
@@ -212,59 +375,105 @@ impl Forces {
     /// to the sensible atmosphere and some scale heights more.
     /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
     /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
-    fn longest_step(&self, state: &PlanetFixed<f64>) -> f64 {
+    fn longest_step(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
         let PlanetFixed { position, velocity } = state;
+        let flow = self.flow(state);
         let radius = length(position);
-        let altitude = self.models.planet.shape.altitude(position);
-        let to_air = (altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
+        let to_air = (flow.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
         let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
         let rise = position.dot(velocity) / radius;
         let inertial = velocity + Vector3::z().cross(position) * self.models.planet.rotation_rate;
         let level_squared = inertial.norm_squared() - rise * rise;
-        let fall = (self.models.planet.gravity(radius) - level_squared / radius).max(0.0);
+        let fall = (self.models.planet.point_gravity(radius) - level_squared / radius).max(0.0);
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
         let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
 
-        let speed = length(velocity);
-        let air = self.air(speed);
-        let drag_time = speed / (air.drag.max(air.lift.abs()) * self.density(altitude));
+        let air = self.air(time, &flow);
+        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density(&flow));
         if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
-    /// D/m, m/s², in a state.
-    pub fn drag(&self, state: &PlanetFixed<f64>) -> f64 {
-        let density = self.density(self.models.planet.shape.altitude(&state.position));
-        self.drag_under(density * state.velocity.norm_squared() * 0.5)
+    /// The power that lift and drag take from the vehicle, over its mass, W/kg.
+    pub(crate) fn power_lost(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
+        -self.aerodynamic(time, &self.flow(state)).dot(&state.velocity)
     }
 
-    /// D/m, m/s², under a dynamic pressure, Pa.
-    pub fn drag_under(&self, dynamic_pressure: f64) -> f64 {
-        let (_, drag_coefficient) = self.coefficients();
-        dynamic_pressure * self.area_over_mass * drag_coefficient
+    /// D/m, m/s², of constant coefficients under a dynamic pressure, Pa.
+    pub(crate) fn drag_under(&self, dynamic_pressure: f64) -> f64 {
+        dynamic_pressure * self.area_over_mass * self.parameters.drag_coefficient
     }
 
     /// The loads in a state.
-    pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, state: &PlanetFixed<S>) -> Loads<S> {
-        let position = &state.position;
-        let Directions { radius, speed, up, ahead, cos_gamma, .. } = Directions::of(state);
-        let altitude = self.models.planet.shape.altitude(position);
-        let density = self.density(altitude);
-        let dynamic_pressure = density * speed * speed * 0.5;
-        let deceleration = if speed.less_than(f64::MIN_POSITIVE) {
-            -length(&self.acceleration(state))
-        } else {
+    pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, time: S, state: &PlanetFixed<S>) -> Loads<S> {
+        let PlanetFixed { position, velocity } = state;
+        let mut flow = self.flow(state);
+        if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
+            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), flow.altitude);
+            flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
+        }
+        let Directions { radius, speed, up, ahead, cos_gamma, .. } = &flow.directions;
+        let density = self.density(&flow);
+        let dynamic_pressure = density * *speed * *speed * 0.5;
+        let air = self.air(time, &flow);
+        let deceleration = if flow.ground_speed.less_than(f64::MIN_POSITIVE) {
+            -length(&self.acceleration(time, state))
+        } else if matches!(self.models.wind, Wind::Still) {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
             let outward = position.x * ahead.x + position.y * ahead.y;
-            self.air(speed).drag * density + self.models.planet.gravity(radius) * up.dot(&ahead)
+            let Pull { inward, axial } = self.models.planet.pull(*radius, up.z);
+            air.drag * density + (inward * up.dot(ahead) + axial * ahead.z)
                 - outward * self.models.planet.rotation_rate.powi(2)
+        } else {
+            -self.acceleration(time, state).dot(velocity) * flow.ground_speed.recip()
         };
-        let (lift_coefficient, drag_coefficient) = self.coefficients();
-        let lift_coefficient = lift_fade_over_cosine(cos_gamma) * cos_gamma * lift_coefficient;
-        // The squares of coefficients, since those of tiny forces would vanish.
+        // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
+        let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, &flow);
+        let lift_coefficient = lift_coefficient * (lift_fade_over_cosine(*cos_gamma) * *cos_gamma);
         let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
         let load_factor = dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY);
-        Loads { altitude, density, air_speed: speed, mach: None, dynamic_pressure, deceleration, load_factor }
+        let mach = flow.density_and_mach.map(|(_, mach)| mach);
+        Loads {
+            altitude: flow.altitude,
+            density,
+            air_speed: *speed,
+            mach,
+            dynamic_pressure,
+            deceleration,
+            load_factor,
+        }
+    }
+
+    fn lift_and_drag_coefficient<S: Over<f64>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
+        let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
+        let Coefficients { lift, drag } =
+            self.coefficients(time, flow).unwrap_or(Coefficients { lift: S::zero(), drag: S::zero() });
+        (lift + lift_coefficient, drag + drag_coefficient)
+    }
+
+    /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
+    pub fn cos_squared_angle_to_air<S: Over<f64>>(&self, state: &PlanetFixed<S>) -> S {
+        let left = self.flow(state).directions.left;
+        left.dot(&left)
+    }
+
+    /// The angles at which the vehicle flies in a state: σ and α, rad.
+    pub fn angles(&self, time: f64, state: &PlanetFixed<f64>) -> [f64; 2] {
+        let flow = self.flow(state);
+        [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
+    }
+
+    /// The air in a state, as far as the atmosphere knows it.
+    pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
+        let altitude = self.models.planet.shape.altitude(&state.position);
+        let sample = self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude);
+        // By the law of gases, denser air of the same temperature presses harder.
+        let factor = self.parameters.density;
+        AtmosphereSample {
+            density: sample.density * factor,
+            pressure: sample.pressure.map(|pressure| pressure * factor),
+            ..sample
+        }
     }
 }
 
@@ -283,8 +492,7 @@ struct Directions<S: nalgebra::Scalar> {
 
 impl<S: Scalar> Directions<S> {
     #[inline(always)]
-    fn of(state: &PlanetFixed<S>) -> Self {
-        let PlanetFixed { position, velocity } = state;
+    fn of(position: &Vector3<S>, velocity: &Vector3<S>) -> Self {
         // The three roots do not wait for each other.
         let across = position.cross(velocity);
         let (radius, speed, moment) = (length(position), length(velocity), length(&across));
@@ -299,12 +507,6 @@ impl<S: Scalar> Directions<S> {
             cos_gamma: moment * over_both,
         }
     }
-}
-
-/// cos²γ, the squared sine of the angle between radius and velocity; 0 at rest.
-pub fn cos_squared_flight_path_angle<S: Scalar>(state: &PlanetFixed<S>) -> S {
-    let left = Directions::of(state).left;
-    left.dot(&left)
 }
 
 /// The share of the lift that is left near the vertical, over cos γ: with x = min(cos γ/ε, 1), x³(10 - 15x + 6x²)/cos γ.

@@ -4,6 +4,8 @@ mod gravity;
 
 pub use gravity::{Gravity, Zonal};
 
+pub(crate) use gravity::Pull;
+
 use crate::scalar::{Scalar, length};
 use nalgebra::Vector3;
 
@@ -140,12 +142,54 @@ impl Planet {
         self.shape.semi_axes().0
     }
 
-    /// Acceleration of gravity, m/s², towards the centre, at a distance from it in m.
+    /// Acceleration of the gravity of a point, m/s², towards the centre, at a distance from it in m.
     ///
     /// # Reference
     /// Jameson 2006, equation 33: g = g₀ (r₀/r)².
     #[inline(always)]
-    pub fn gravity<S: Scalar>(&self, radius: S) -> S {
+    pub fn point_gravity<S: Scalar>(&self, radius: S) -> S {
         (radius * radius).recip() * self.gravitational_parameter
+    }
+
+    /// Acceleration of gravity, m/s², at a distance from the centre, m, in the planet-fixed direction `up`, of length 1.
+    #[inline(always)]
+    pub fn gravity<S: Scalar>(&self, radius: S, up: &Vector3<S>) -> Vector3<S> {
+        match self.gravity {
+            Gravity::InverseSquare => {
+                let inward = self.point_gravity(radius);
+                up.map(|component| component * -inward)
+            }
+            Gravity::Zonal(_) => {
+                let Pull { inward, axial } = self.pull(radius, up.z);
+                let mut gravity = up.map(|component| component * -inward);
+                gravity.z -= axial;
+                gravity
+            }
+        }
+    }
+
+    /// Acceleration of gravity, m/s², by its parts along the radius and along the axis, at the sine of a geocentric latitude.
+    #[inline(always)]
+    pub(crate) fn pull<S: Scalar>(&self, radius: S, sin_latitude: S) -> Pull<S> {
+        let inward = self.point_gravity(radius);
+        match &self.gravity {
+            Gravity::InverseSquare => Pull { inward, axial: S::zero() },
+            Gravity::Zonal(zonal) => {
+                let over_point = zonal.pull(sin_latitude, radius.recip() * self.equatorial_radius());
+                Pull { inward: over_point.inward * inward, axial: over_point.axial * inward }
+            }
+        }
+    }
+
+    /// The potential of gravity, m²/s², negative and zero at infinity, at a planet-fixed position, m.
+    pub fn potential<S: Scalar>(&self, position: &Vector3<S>) -> S {
+        let over_radius = length(position).recip();
+        let of_point = over_radius * -self.gravitational_parameter;
+        match &self.gravity {
+            Gravity::InverseSquare => of_point,
+            Gravity::Zonal(zonal) => {
+                of_point * zonal.potential(position.z * over_radius, over_radius * self.equatorial_radius())
+            }
+        }
     }
 }

@@ -6,7 +6,7 @@ use std::fmt;
 use num_dual::Dual2_64;
 
 use crate::atmosphere::Atmosphere;
-use crate::control::{Against, Command, Control};
+use crate::control::{Command, Control};
 use crate::coordinates::PlanetFixed;
 use crate::motion::{Forces, Models, Parameters};
 use crate::planet::{Gravity, Planet, Zonal};
@@ -280,7 +280,7 @@ impl Scenario {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
             }
-            let loads = case.forces().loads(state);
+            let loads = case.forces().loads(0.0, state);
             if !(loads.deceleration.is_finite() && loads.load_factor.is_finite()) {
                 faults.push(Fault::InfiniteAcceleration);
             }
@@ -316,9 +316,12 @@ impl Scenario {
 }
 
 impl Case {
-    /// What acts on the vehicle.
+    /// What acts on the vehicle at the start.
     pub fn forces(&self) -> Forces {
-        Forces::new(self.models(), self.parameters())
+        let mut forces = Forces::new(self.models(), self.parameters());
+        // Where no regime holds at the start, the flight says so.
+        let _ = forces.settle(0.0, &self.initial_state);
+        forces
     }
 
     /// The models, as far as they hold no number of [`parameters`](Self::parameters).
@@ -375,13 +378,11 @@ impl Case {
         if self.atmosphere.has_temperature() {
             return Vec::new();
         }
-        let by_mach = |command: &Command| matches!(command, Command::Schedule(schedule) if schedule.against() == Against::Mach);
         let Control { bank_angle, angle_of_attack } = &self.control;
-        let by_table = matches!(self.vehicle.aerodynamics, Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_));
         let needs = [
-            ("vehicle.aerodynamics.type", by_table),
-            ("control.bank_angle.against", by_mach(bank_angle)),
-            ("control.angle_of_attack.against", by_mach(angle_of_attack)),
+            ("vehicle.aerodynamics.type", self.vehicle.aerodynamics.is_by_mach()),
+            ("control.bank_angle.against", bank_angle.is_by_mach()),
+            ("control.angle_of_attack.against", angle_of_attack.is_by_mach()),
         ];
         needs.into_iter().filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
     }
@@ -389,7 +390,7 @@ impl Case {
     /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
     fn departure(&self) -> Departure {
         let PlanetFixed { position, velocity } = &self.initial_state;
-        let acceleration = self.forces().acceleration(&self.initial_state);
+        let acceleration = self.forces().acceleration(0.0, &self.initial_state);
         let moving = nalgebra::Vector3::from_fn(|i, _| Dual2_64::new(position[i], velocity[i], acceleration[i]));
         let altitude = self.planet.shape.altitude(&moving);
         let level = 16.0 * f64::EPSILON * velocity.norm();

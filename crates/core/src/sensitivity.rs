@@ -1,20 +1,23 @@
 //! How the end of a flight depends on its numbers: derivatives of the arrival, the change of its time included.
 //!
 //! The steps of the flight are followed once more in dual numbers, which carry all derivatives along ([`follow`]); at the ground
-//! one step of Newton's method gives the derivatives of the time of the impact, and with it those of the state there.
+//! one step of Newton's method gives the derivatives of the time of the impact, and with it those of the state there. So it does where
+//! the formulas of the models change: as long as the change comes later, the flight moves on by the rates from before it.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::SVector;
-use num_dual::{DualSVec64, jacobian};
+use num_dual::{Dual64, DualSVec64, jacobian};
 
+use crate::atmosphere::Atmosphere;
 use crate::coordinates::FlightPath;
-use crate::integrate::{IntegrationError, System, follow};
-use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
+use crate::integrate::{System, follow};
+use crate::motion::{Cartesian, Forces, Formulation, Parameters, Regime, Spherical, moving};
 use crate::scalar::Scalar;
 use crate::scenario::{Case, Equations};
 use crate::simulate::SimulationError;
-use crate::trajectory::{Termination, Trajectory};
+use crate::trajectory::{Leg, Termination, Trajectory};
+use crate::vehicle::Aerodynamics;
 
 /// How a quantity changes with the numbers of a case, each by itself: SI units and radians over SI units and radians.
 ///
@@ -34,6 +37,8 @@ pub struct Gradient {
     pub bank_angle: f64,
     /// By the density at altitude 0, kg/m³.
     pub surface_density: f64,
+    /// By the density factor.
+    pub density_factor: f64,
     /// By the initial state; its radius stays when its latitude changes.
     pub initial_state: FlightPath<f64>,
 }
@@ -72,20 +77,21 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
     let numbers =
         [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, r, theta, phi, v, gamma, psi];
     let arrival = |numbers: SVector<Dual, INPUTS>| arrival(flight, &numbers.into(), interrupt);
-    let (_, slopes) = jacobian(arrival, &SVector::from(numbers))
-        .map_err(|_| SimulationError::Interrupted { time: flight.end_time() })?;
+    let (_, slopes) = jacobian(arrival, &SVector::from(numbers))?;
+    let has = Numbers::of(&flight.case);
     let gradient = |row: usize| {
-        let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, surface_density, state @ ..]: [f64;
-            INPUTS] = std::array::from_fn(|input| slopes[(row, input)]);
-        let initial_state = state.into();
+        let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, state @ ..]: [f64; INPUTS] =
+            std::array::from_fn(|input| slopes[(row, input)]);
+        let only = |has: bool, slope: f64| if has { slope } else { f64::NAN };
         Gradient {
-            mass,
-            reference_area,
-            lift_coefficient,
-            drag_coefficient,
+            mass: if has.mass { mass } else { 0.0 },
+            reference_area: only(has.mass, reference_area),
+            lift_coefficient: only(has.mass, lift_coefficient),
+            drag_coefficient: only(has.mass, drag_coefficient),
             bank_angle,
-            surface_density,
-            initial_state,
+            surface_density: has.surface_density.map_or(f64::NAN, |_| density * flight.case.density_factor),
+            density_factor: density * has.surface_density.unwrap_or(1.0),
+            initial_state: state.into(),
         }
     };
     let defined = |row: usize, size: f64| if size > UNDEFINED { gradient(row) } else { Gradient::NONE };
@@ -102,6 +108,25 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
     })
 }
 
+/// Which of its numbers a case has.
+struct Numbers {
+    /// Mass, area and coefficients, and not ratios of them.
+    mass: bool,
+    surface_density: Option<f64>,
+}
+
+impl Numbers {
+    fn of(case: &Case) -> Self {
+        Self {
+            mass: !matches!(case.vehicle.aerodynamics, Aerodynamics::Ballistic { .. }),
+            surface_density: match case.atmosphere {
+                Atmosphere::Exponential { surface_density, .. } => Some(surface_density),
+                Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => None,
+            },
+        }
+    }
+}
+
 impl Gradient {
     /// No derivatives.
     const NONE: Self = Self {
@@ -111,6 +136,7 @@ impl Gradient {
         drag_coefficient: f64::NAN,
         bank_angle: f64::NAN,
         surface_density: f64::NAN,
+        density_factor: f64::NAN,
         initial_state: FlightPath {
             radius: f64::NAN,
             longitude: f64::NAN,
@@ -125,40 +151,77 @@ impl Gradient {
 /// The end of the flight: time, longitude, geocentric latitude, speed and flight-path angle.
 type Outputs = SVector<Dual, 5>;
 
-fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool) -> Result<Outputs, IntegrationError> {
+fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool) -> Result<Outputs, SimulationError> {
     let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = *numbers;
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
     let forces = Forces::new(flight.case.models(), parameters);
     let start = FlightPath::from(start);
     match flight.case.solver.equations {
-        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &Cartesian(forces), &start, interrupt),
-        Equations::Spherical => arrival_of::<Spherical, _>(flight, &Spherical(forces), &start, interrupt),
+        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, forces, Cartesian, &start, interrupt),
+        Equations::Spherical => arrival_of::<Spherical, _>(flight, forces, Spherical, &start, interrupt),
     }
 }
 
 fn arrival_of<F: Formulation, M: System<Dual, 6>>(
     flight: &Trajectory,
-    motion: &M,
+    mut forces: Forces<Dual>,
+    formulation: impl Fn(Forces<Dual>) -> M,
     start: &FlightPath<Dual>,
     interrupt: &AtomicBool,
-) -> Result<Outputs, IntegrationError> {
-    let mut end = follow(motion, F::coordinates(&start.to_planet_fixed()), &flight.steps, interrupt)?;
+) -> Result<Outputs, SimulationError> {
+    let mut state = F::coordinates(&start.to_planet_fixed());
+    forces.enter(flight.regime);
+    let mut motion = formulation(forces.clone());
+    for Leg { step, regime } in &flight.legs {
+        if interrupt.load(Ordering::Relaxed) {
+            return Err(SimulationError::Interrupted { time: step.start_time });
+        }
+        if *regime != forces.regime() {
+            let rates = motion.derivative(step.start_time.into(), &state);
+            let delay = turning_delay::<F>(flight, &forces, *regime, step.start_time, &state, &rates);
+            forces.enter(*regime);
+            motion = formulation(forces.clone());
+            // So long the rates before the turn hold, and not yet those after it.
+            let next = motion.derivative(step.start_time.into(), &state);
+            state = std::array::from_fn(|i| state[i] + (rates[i] - next[i]) * delay);
+        }
+        state = follow(&motion, &state, step);
+    }
     let mut time = Dual::from(flight.end_time());
     if flight.termination() == Termination::SurfaceImpact {
-        let rates = motion.derivative(&end);
-        let delay = crossing_delay::<F>(&flight.case, &end, &rates);
+        let rates = motion.derivative(time, &state);
+        let shape = flight.case.planet.shape;
+        let moving = moving(&state.map(Scalar::value), &rates.map(Scalar::value));
+        let climb = shape.altitude(&F::planet_fixed(&moving).position).eps;
+        let delay = delay(shape.altitude(&F::planet_fixed(&state).position), climb);
         time += delay;
-        end = std::array::from_fn(|i| end[i] + rates[i] * delay);
+        state = std::array::from_fn(|i| state[i] + rates[i] * delay);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
-        FlightPath::from_planet_fixed(&F::planet_fixed(&end));
+        FlightPath::from_planet_fixed(&F::planet_fixed(&state));
     Ok([time, longitude, geocentric_latitude, speed, flight_path_angle].into())
 }
 
-/// How much later the stop altitude is crossed as the numbers vary: a step of Newton's method, -h/ḣ, of value zero.
-fn crossing_delay<F: Formulation>(case: &Case, end: &[Dual; 6], rates: &[Dual; 6]) -> Dual {
-    let altitude = case.planet.shape.altitude(&F::planet_fixed(end).position);
-    let moving = crate::motion::moving(&end.map(Scalar::value), &rates.map(Scalar::value));
-    let climb = case.planet.shape.altitude(&F::planet_fixed(&moving).position).eps;
-    -(altitude - altitude.value()) * climb.recip()
+/// How much later the models turn to another regime as the numbers vary; not at all where they turn by the time.
+fn turning_delay<F: Formulation>(
+    flight: &Trajectory,
+    forces: &Forces<Dual>,
+    next: Regime,
+    time: f64,
+    state: &[Dual; 6],
+    rates: &[Dual; 6],
+) -> Dual {
+    let values = state.map(Scalar::value);
+    let motion = flight.motion(forces.regime());
+    let Some(switch) = motion.forces().first_to_turn(next, time, &F::planet_fixed(&values)) else {
+        return Dual::from(0.0);
+    };
+    let moving = F::planet_fixed(&moving(&values, &rates.map(Scalar::value)));
+    let rate = motion.forces().readings(Dual64::new(time, 1.0), &moving)[switch as usize].eps;
+    delay(forces.readings(Dual::from(time), &F::planet_fixed(state))[switch as usize], rate)
+}
+
+/// How much later a quantity passes the value that it has: a step of Newton's method, -q/q̇, of value zero.
+fn delay(quantity: Dual, rate: f64) -> Dual {
+    -(quantity - quantity.value()) * rate.recip()
 }

@@ -5,15 +5,15 @@ mod descent;
 mod extremes;
 mod flight;
 mod passage;
+mod watch;
 
 pub use abreast::arrivals;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::integrate::Step;
-use crate::motion::{Cartesian, Formulation, Singularity, Spherical};
+use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
 use crate::scenario::{Equations, Plain, Scenario};
-use crate::trajectory::{Arrival, Trajectory};
+use crate::trajectory::{Arrival, Leg, Trajectory};
 use extremes::Extremes;
 use flight::Flight;
 use passage::Passage;
@@ -49,6 +49,17 @@ pub enum SimulationError {
         /// The instant reached, s.
         time: f64,
     },
+    /// On either side of a boundary the motion leads back across it.
+    #[error(
+        "{} switches back and forth from t = {} s on: on either side of one of its entries the flight is led back to it",
+        name(*.switch), Plain(*.time)
+    )]
+    Chatter {
+        /// The instant reached, s.
+        time: f64,
+        /// What switches.
+        switch: Switch,
+    },
     /// The flag was raised.
     #[error("interrupted at t = {} s", Plain(*.time))]
     Interrupted {
@@ -65,6 +76,16 @@ fn place(singularity: Singularity) -> &'static str {
     }
 }
 
+fn name(switch: Switch) -> &'static str {
+    match switch {
+        Switch::Atmosphere => "the atmosphere",
+        Switch::Wind => "the wind",
+        Switch::Mach | Switch::TableAngleOfAttack => "the table of aerodynamics",
+        Switch::BankAngle => "the schedule of the bank angle",
+        Switch::AngleOfAttack => "the schedule of the angle of attack",
+    }
+}
+
 /// Flies the scenario until it crosses the stop altitude downwards or its time is over.
 ///
 /// `interrupt` is looked at before every step; once it is true, the flight ends with an error.
@@ -74,8 +95,8 @@ fn place(singularity: Singularity) -> &'static str {
 pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajectory, SimulationError> {
     let forces = scenario.case().forces();
     match scenario.case().solver.equations {
-        Equations::Cartesian => record(scenario, &Cartesian(forces), interrupt),
-        Equations::Spherical => record(scenario, &Spherical(forces), interrupt),
+        Equations::Cartesian => record(scenario, Cartesian(forces), interrupt),
+        Equations::Spherical => record(scenario, Spherical(forces), interrupt),
     }
 }
 
@@ -86,42 +107,45 @@ pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajector
 pub fn arrival(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Arrival, SimulationError> {
     let forces = scenario.case().forces();
     match scenario.case().solver.equations {
-        Equations::Cartesian => fly(scenario, &Cartesian(forces), interrupt, |_| Ok(())),
-        Equations::Spherical => fly(scenario, &Spherical(forces), interrupt, |_| Ok(())),
+        Equations::Cartesian => {
+            fly(scenario, &mut Flight::start(scenario, Cartesian(forces), interrupt)?, |_| Ok(()))
+        }
+        Equations::Spherical => {
+            fly(scenario, &mut Flight::start(scenario, Spherical(forces), interrupt)?, |_| Ok(()))
+        }
     }
 }
 
 fn record<F: Formulation>(
     scenario: &Scenario,
-    motion: &F,
+    motion: F,
     interrupt: &AtomicBool,
 ) -> Result<Trajectory, SimulationError> {
-    let case = scenario.case();
-    let start = F::coordinates(&case.initial_state);
-    flight::regular(motion, 0.0, &start)?;
-    let mut steps: Vec<Step<6>> = Vec::with_capacity(TYPICAL_STEPS);
-    let mut extremes = Extremes::new(motion, case.vehicle.has_lift(), &start)?;
-    let arrival = fly(scenario, motion, interrupt, |passage| {
-        extremes.observe(motion, passage)?;
-        steps.push(passage.step.clone());
+    let mut flight = Flight::start(scenario, motion, interrupt)?;
+    let mut legs = Vec::with_capacity(TYPICAL_STEPS);
+    let mut extremes = Extremes::new(&flight.motion, &flight.integrator, scenario.case().vehicle.has_lift())?;
+    let regime = flight.motion.forces().regime();
+    let arrival = fly(scenario, &mut flight, |passage| {
+        extremes.observe(passage)?;
+        legs.push(Leg { step: passage.step.clone(), regime: passage.motion.forces().regime() });
         Ok(())
     })?;
-    Ok(Trajectory { case: case.clone(), start, steps, arrival, peaks: extremes.peaks, warnings: extremes.warnings })
+    let case = scenario.case().clone();
+    let start = F::planet_fixed(&F::coordinates(&case.initial_state));
+    Ok(Trajectory::new(case, start, regime, legs, arrival, extremes.peaks, extremes.warnings))
 }
 
 /// Flies to the end and shows every step on the way.
 fn fly<F: Formulation>(
     scenario: &Scenario,
-    motion: &F,
-    interrupt: &AtomicBool,
+    flight: &mut Flight<F>,
     mut observe: impl FnMut(&Passage<F>) -> Result<(), SimulationError>,
 ) -> Result<Arrival, SimulationError> {
-    let mut flight = Flight::start(scenario, motion, interrupt)?;
     if scenario.ends_at_start() {
         return Ok(flight.at_start());
     }
     loop {
-        let step = flight.integrator.advance(scenario.case().stop.time).map_err(|error| flight.failure(error))?;
+        let step = flight.advance()?;
         if let Some(arrival) = flight.pass(step, &mut observe)? {
             return Ok(arrival);
         }

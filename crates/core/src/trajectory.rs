@@ -1,9 +1,12 @@
 //! The answer: how the flight ended, its extremes, and its state at any time.
 
-use crate::coordinates::{FlightPath, PlanetFixed, latitude_and_altitude};
+use crate::atmosphere::AtmosphereSample;
+use crate::coordinates::{FlightPath, GreatCircle, Inertial, PlanetFixed, latitude_and_altitude};
 use crate::integrate::{Interpolant, Statistics, Step};
-use crate::motion::{Cartesian, Formulation, Loads, Spherical};
+use crate::motion::{Cartesian, Forces, Formulation, Loads, Regime, Spherical};
 use crate::scenario::{Case, Equations};
+
+pub use crate::motion::Lookup;
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,19 +79,6 @@ pub enum Warning {
     },
 }
 
-/// A table, and the quantity by which something is looked up in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lookup {
-    /// The atmosphere by altitude; outside, the logarithm of its density goes on in a straight line.
-    Atmosphere,
-    /// The wind by altitude.
-    Wind,
-    /// The aerodynamics by Mach number.
-    Mach,
-    /// The aerodynamics by angle of attack.
-    AngleOfAttack,
-}
-
 /// The instants at which a trajectory is wanted; its start and its end always belong to them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sampling {
@@ -149,25 +139,52 @@ pub struct FlightPoint {
 impl FlightPoint {
     /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
-        let Loads { altitude, density, dynamic_pressure, deceleration, load_factor, .. } = self.loads;
+        let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor } = self.loads;
         let path: [f64; 6] = self.flight_path.into();
-        let rest = [altitude, density, dynamic_pressure, deceleration, load_factor, self.geodetic_altitude];
-        path.iter().chain(&rest).all(|quantity| quantity.is_finite())
+        let loads = [altitude, density, air_speed, dynamic_pressure, deceleration, load_factor];
+        let angles = [self.bank_angle, self.angle_of_attack, self.inertial_flight_path_angle];
+        let rest = [self.geodetic_altitude, self.inertial_speed, self.specific_energy];
+        let known = [mach, self.temperature, self.pressure, self.speed_of_sound].into_iter().flatten();
+        let always = path.into_iter().chain(loads).chain(angles).chain(rest);
+        always.chain(known).all(f64::is_finite)
     }
+}
+
+/// A step of a flight, and the regime of its models during it.
+#[derive(Clone, Debug)]
+pub(crate) struct Leg {
+    pub(crate) step: Step<6>,
+    pub(crate) regime: Regime,
 }
 
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     pub(crate) case: Case,
-    pub(crate) start: [f64; 6],
-    pub(crate) steps: Vec<Step<6>>,
-    pub(crate) arrival: Arrival,
-    pub(crate) peaks: Peaks,
-    pub(crate) warnings: Vec<Warning>,
+    start: PlanetFixed<f64>,
+    /// That in which the flight starts.
+    pub(crate) regime: Regime,
+    pub(crate) legs: Vec<Leg>,
+    arrival: Arrival,
+    peaks: Peaks,
+    warnings: Vec<Warning>,
+    great_circle: Option<GreatCircle>,
 }
 
 impl Trajectory {
+    pub(crate) fn new(
+        case: Case,
+        start: PlanetFixed<f64>,
+        regime: Regime,
+        legs: Vec<Leg>,
+        arrival: Arrival,
+        peaks: Peaks,
+        warnings: Vec<Warning>,
+    ) -> Self {
+        let great_circle = GreatCircle::of(&case.initial_state);
+        Self { case, start, regime, legs, arrival, peaks, warnings, great_circle }
+    }
+
     /// How the flight ended.
     pub fn termination(&self) -> Termination {
         self.arrival.termination
@@ -193,29 +210,39 @@ impl Trajectory {
         self.arrival.time
     }
 
+    /// Where and how it ended.
+    pub fn arrival(&self) -> &Arrival {
+        &self.arrival
+    }
+
     /// The initial state.
     pub fn initial(&self) -> FlightPoint {
-        self.point(0.0, &self.start)
+        self.point(&self.forces(self.regime), 0.0, &self.start)
     }
 
     /// The final state.
     pub fn last(&self) -> FlightPoint {
-        self.steps.last().map_or_else(|| self.initial(), |step| self.point(step.end_time, &step.end))
+        let regime = self.legs.last().map_or(self.regime, |leg| leg.regime);
+        self.point(&self.forces(regime), self.arrival.time, &self.arrival.state)
     }
 
     /// The state at a time, s; before the start it is the initial one, after the end the final one.
     pub fn at(&self, time: f64) -> FlightPoint {
-        let following = self.steps.partition_point(|step| step.end_time <= time);
-        match self.steps.get(following) {
+        let following = self.legs.partition_point(|leg| leg.step.end_time <= time);
+        match self.legs.get(following) {
             _ if time <= 0.0 => self.initial(),
-            Some(step) => self.point(time, &self.interpolant(step).state_at(time)),
+            Some(leg) => {
+                let motion = self.motion(leg.regime);
+                let state = motion.planet_fixed(&motion.interpolant(&leg.step).state_at(time));
+                self.point(motion.forces(), time, &state)
+            }
             None => self.last(),
         }
     }
 
-    /// D/m, m/s², at a point of the flight.
+    /// D/m, m/s², at a point of a flight of constant coefficients.
     pub fn drag_deceleration(&self, point: &FlightPoint) -> f64 {
-        self.case.forces().drag_under(point.loads.dynamic_pressure)
+        self.forces(self.regime).drag_under(point.loads.dynamic_pressure)
     }
 
     /// The instants of a sampling, strictly increasing, s.
@@ -225,7 +252,7 @@ impl Trajectory {
     pub fn instants(&self, sampling: &Sampling, limit: usize) -> Result<Vec<f64>, TooManyInstants> {
         let end = self.end_time();
         let wanted = match sampling {
-            Sampling::PerStep(samples) => samples.saturating_mul(self.steps.len()),
+            Sampling::PerStep(samples) => samples.saturating_mul(self.legs.len()),
             Sampling::Count(count) => *count,
             Sampling::Interval(_) | Sampling::Times(_) => 0,
         };
@@ -235,9 +262,9 @@ impl Trajectory {
         let mut instants = Instants { times: vec![0.0], end, limit };
         match sampling {
             Sampling::PerStep(samples) => {
-                for step in &self.steps {
+                for leg in &self.legs {
                     for sample in 1..=*samples {
-                        instants.push(step.time(ratio(sample, *samples)))?;
+                        instants.push(leg.step.time(ratio(sample, *samples)))?;
                     }
                 }
             }
@@ -266,17 +293,20 @@ impl Trajectory {
     /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
         let mut following = 0;
+        let mut motion = self.motion(self.regime);
         let mut inside: Option<(usize, Interpolant<6>)> = None;
         let mut point = |time: f64| {
-            while self.steps.get(following).is_some_and(|step| step.end_time <= time) {
+            while self.legs.get(following).is_some_and(|leg| leg.step.end_time <= time) {
                 following += 1;
             }
-            match self.steps.get(following) {
+            match self.legs.get(following) {
                 _ if time <= 0.0 => self.initial(),
-                Some(step) => {
+                Some(leg) => {
+                    motion.forces_mut().enter(leg.regime);
                     let known = inside.take().filter(|(index, _)| *index == following);
-                    let (_, interpolant) = inside.insert(known.unwrap_or_else(|| (following, self.interpolant(step))));
-                    self.point(time, &interpolant.state_at(time))
+                    let (_, interpolant) =
+                        inside.insert(known.unwrap_or_else(|| (following, motion.interpolant(&leg.step))));
+                    self.point(motion.forces(), time, &motion.planet_fixed(&interpolant.state_at(time)))
                 }
                 None => self.last(),
             }
@@ -284,43 +314,85 @@ impl Trajectory {
         times.iter().map(|time| point(*time)).collect()
     }
 
-    pub(crate) fn interpolant(&self, step: &Step<6>) -> Interpolant<6> {
-        let forces = self.case.forces();
+    /// The equations that were integrated, in a regime.
+    pub(crate) fn motion(&self, regime: Regime) -> Motion {
+        let forces = self.forces(regime);
         match self.case.solver.equations {
-            Equations::Cartesian => step.interpolant(&Cartesian(forces)),
-            Equations::Spherical => step.interpolant(&Spherical(forces)),
+            Equations::Cartesian => Motion::Cartesian(Cartesian(forces)),
+            Equations::Spherical => Motion::Spherical(Spherical(forces)),
         }
     }
 
-    /// The state of six numbers of the flight's formulation.
-    pub(crate) fn planet_fixed(&self, coordinates: &[f64; 6]) -> PlanetFixed<f64> {
-        match self.case.solver.equations {
-            Equations::Cartesian => Cartesian::planet_fixed(coordinates),
-            Equations::Spherical => Spherical::planet_fixed(coordinates),
-        }
+    fn forces(&self, regime: Regime) -> Forces {
+        let mut forces = Forces::new(self.case.models(), self.case.parameters());
+        forces.enter(regime);
+        forces
     }
 
-    fn point(&self, time: f64, coordinates: &[f64; 6]) -> FlightPoint {
-        let state = self.planet_fixed(coordinates);
-        let flight_path = FlightPath::from_planet_fixed(&state).wrapped();
-        let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &self.case.planet.shape);
-        let loads = self.case.forces().loads(&state);
+    fn point(&self, forces: &Forces, time: f64, state: &PlanetFixed<f64>) -> FlightPoint {
+        let planet = &self.case.planet;
+        let flight_path = FlightPath::from_planet_fixed(state).wrapped();
+        let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &planet.shape);
+        let AtmosphereSample { temperature, pressure, speed_of_sound, .. } = forces.air_at(state);
+        let [bank_angle, angle_of_attack] = forces.angles(time, state);
+        let inertial = Inertial::from_planet_fixed(state, planet, 0.0);
+        let climb = inertial.position.dot(&inertial.velocity);
+        let across = inertial.position.cross(&inertial.velocity).norm();
+        let range = self.great_circle.map(|circle| circle.along_and_across(&state.position));
+        let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * planet.equatorial_radius()));
         FlightPoint {
             time,
             flight_path,
             geodetic_latitude,
             geodetic_altitude,
-            loads,
-            temperature: None,
-            pressure: None,
-            speed_of_sound: None,
-            bank_angle: 0.0,
-            angle_of_attack: 0.0,
-            inertial_speed: 0.0,
-            inertial_flight_path_angle: 0.0,
-            specific_energy: 0.0,
-            downrange: None,
-            crossrange: None,
+            loads: forces.loads(time, state),
+            temperature,
+            pressure,
+            speed_of_sound,
+            bank_angle,
+            angle_of_attack,
+            inertial_speed: inertial.velocity.norm(),
+            inertial_flight_path_angle: climb.atan2(across),
+            specific_energy: 0.5 * inertial.velocity.norm_squared() + planet.potential(&state.position),
+            downrange,
+            crossrange,
+        }
+    }
+}
+
+/// The equations of either formulation.
+pub(crate) enum Motion {
+    Cartesian(Cartesian),
+    Spherical(Spherical),
+}
+
+impl Motion {
+    pub(crate) fn forces(&self) -> &Forces {
+        match self {
+            Self::Cartesian(motion) => motion.forces(),
+            Self::Spherical(motion) => motion.forces(),
+        }
+    }
+
+    pub(crate) fn forces_mut(&mut self) -> &mut Forces {
+        match self {
+            Self::Cartesian(motion) => motion.forces_mut(),
+            Self::Spherical(motion) => motion.forces_mut(),
+        }
+    }
+
+    pub(crate) fn interpolant(&self, step: &Step<6>) -> Interpolant<6> {
+        match self {
+            Self::Cartesian(motion) => step.interpolant(motion),
+            Self::Spherical(motion) => step.interpolant(motion),
+        }
+    }
+
+    /// The state of six numbers of the formulation.
+    pub(crate) fn planet_fixed(&self, coordinates: &[f64; 6]) -> PlanetFixed<f64> {
+        match self {
+            Self::Cartesian(_) => Cartesian::planet_fixed(coordinates),
+            Self::Spherical(_) => Spherical::planet_fixed(coordinates),
         }
     }
 }

@@ -44,22 +44,19 @@ pub struct Vehicle {
 
 /// The coefficients of an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+pub struct Coefficients<S> {
     /// `C_L`.
-    pub lift: f64,
+    pub lift: S,
     /// `C_D`.
-    pub drag: f64,
+    pub drag: S,
 }
 
 impl Aerodynamics {
-    /// Lift and drag coefficient.
-    #[inline(always)]
-    pub fn coefficients(&self) -> Coefficients {
-        match *self {
-            Self::Constant { lift_coefficient, drag_coefficient } => {
-                Coefficients { lift: lift_coefficient, drag: drag_coefficient }
-            }
-            _ => Coefficients { lift: 0.0, drag: 0.0 },
+    /// Whether the coefficients depend on the Mach number.
+    pub fn is_by_mach(&self) -> bool {
+        match self {
+            Self::Constant { .. } | Self::Ballistic { .. } => false,
+            Self::MachTable(_) | Self::AlphaMachTable(_) => true,
         }
     }
 }
@@ -67,6 +64,10 @@ impl Aerodynamics {
 impl Vehicle {
     /// Whether the vehicle has any lift.
     pub fn has_lift(&self) -> bool {
-        self.aerodynamics.coefficients().lift != 0.0 && self.reference_area > 0.0
+        match self.aerodynamics {
+            Aerodynamics::Constant { lift_coefficient, .. } => lift_coefficient != 0.0 && self.reference_area > 0.0,
+            Aerodynamics::Ballistic { lift_to_drag, .. } => lift_to_drag != 0.0,
+            Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => self.reference_area > 0.0,
+        }
     }
 }

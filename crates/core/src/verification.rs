@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::coordinates::PlanetFixed;
-use crate::motion::Forces;
 use crate::scenario::{Bound, Case, Scenario};
 use crate::simulate::{SimulationError, arrival};
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Leg, Trajectory};
 
 /// By how much a flight is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,9 +17,9 @@ pub struct Verification {
     pub time_difference: f64,
     /// Between the final positions of both, m.
     pub distance: f64,
-    /// The greatest amount by which the balance of energy was off on the way, J/kg: the energy lost, which the drag should have taken.
+    /// The greatest amount by which the balance of energy was off on the way, J/kg: the energy lost, which the air should have taken.
     pub energy_drift: f64,
-    /// The energy that drag has taken, J/kg.
+    /// The energy that drag, and in wind lift, has taken, J/kg.
     pub drag_work: f64,
 }
 
@@ -39,7 +38,7 @@ pub fn verify(
     Ok(Verification {
         relative_tolerance,
         time_difference: flight.end_time() - finer.time,
-        distance: (flight.arrival.state.position - finer.state.position).norm(),
+        distance: (flight.arrival().state.position - finer.state.position).norm(),
         energy_drift,
         drag_work,
     })
@@ -48,25 +47,28 @@ pub fn verify(
 /// The greatest error of the balance, and the work of the drag, J/kg.
 ///
 /// ```text
-/// E = V²/2 - ω² (x² + y²)/2 - GM/r,   dE/dt = -(D/m) V
+/// E = V²/2 - ω² (x² + y²)/2 + U,   dE/dt = (D + L)·V/m
 /// ```
 ///
-/// Lift and the Coriolis force are across the velocity; the energy is Jameson 2006, equation 29, integrated once.
+/// with the potential U of gravity. Without wind, lift and the Coriolis force are across the velocity; the energy is Jameson 2006,
+/// equation 29, integrated once.
 fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, f64), SimulationError> {
-    let forces = flight.case.forces();
+    let mut motion = flight.motion(flight.regime);
     let start = energy(&flight.case, &flight.case.initial_state);
     let (mut drift, mut work): (f64, f64) = (0.0, 0.0);
-    for step in &flight.steps {
+    for Leg { step, regime } in &flight.legs {
         if interrupt.load(Ordering::Relaxed) {
             return Err(SimulationError::Interrupted { time: step.start_time });
         }
-        let interpolant = flight.interpolant(step);
-        let power = |part: f64| drag_power(&forces, &flight.planet_fixed(&interpolant.state(part)));
+        motion.forces_mut().enter(*regime);
+        let interpolant = motion.interpolant(step);
+        let power =
+            |part: f64| motion.forces().power_lost(step.time(part), &motion.planet_fixed(&interpolant.state(part)));
         let half = step.length() / 2.0;
         for (abscissa, weight) in GAUSS {
             work += half * weight * (power(0.5 - abscissa / 2.0) + power(0.5 + abscissa / 2.0));
         }
-        let off = energy(&flight.case, &flight.planet_fixed(&step.end)) + work - start;
+        let off = energy(&flight.case, &motion.planet_fixed(&step.end)) + work - start;
         drift = drift.max(off.abs());
     }
     Ok((drift, work))
@@ -75,13 +77,8 @@ fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, f
 fn energy(case: &Case, state: &PlanetFixed<f64>) -> f64 {
     let PlanetFixed { position, velocity } = state;
     let from_axis_squared = position.x * position.x + position.y * position.y;
-    velocity.norm_squared() / 2.0
-        - case.planet.rotation_rate.powi(2) * from_axis_squared / 2.0
-        - case.planet.gravitational_parameter / position.norm()
-}
-
-fn drag_power(forces: &Forces, state: &PlanetFixed<f64>) -> f64 {
-    forces.drag(state) * state.velocity.norm()
+    velocity.norm_squared() / 2.0 - case.planet.rotation_rate.powi(2) * from_axis_squared / 2.0
+        + case.planet.potential(position)
 }
 
 /// Abscissae, each for both signs, and weights of Gauss's quadrature with 12 points on [-1, 1]: exact to degree 23.

@@ -42,3 +42,10 @@ impl WindTable {
         &self.range
     }
 }
+
+impl WindTable {
+    /// stub
+    pub fn velocity<S: crate::scalar::Scalar>(&self, _: usize, _: S, _: &interpolation::Hint) -> [S; 2] {
+        [S::zero(), S::zero()]
+    }
+}

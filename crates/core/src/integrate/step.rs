@@ -1,9 +1,7 @@
 //! One step of the method, and the state inside it.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
+use super::System;
 use super::tableau::{self, Row};
-use super::{IntegrationError, System};
 use crate::scalar::{Lanes, Scalar};
 
 /// Evaluations of the derivative for a trial step.
@@ -58,6 +56,7 @@ pub(super) struct Trial<S, const N: usize> {
 #[inline]
 pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
     system: &F,
+    time: S,
     start: &[S; N],
     derivative: &[S; N],
     length: S::Value,
@@ -68,7 +67,7 @@ pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
     macro_rules! stages {
         ($($stage:literal)*) => {$(
             let slope = sum(&slopes, const { tableau::STAGES[$stage - 1] });
-            slopes[$stage] = system.derivative(&advanced(start, &slope, length));
+            slopes[$stage] = system.derivative(later(time, length, tableau::NODES[$stage - 1]), &advanced(start, &slope, length));
         )*};
     }
     stages!(1 2 3 4 5 6 7 8 9 10 11);
@@ -141,8 +140,9 @@ impl<const N: usize> Step<N> {
         slopes[0] = start_derivative;
         slopes[FIRST_KEPT..STAGES].copy_from_slice(&self.slopes);
         slopes[STAGES] = end_derivative;
-        for (stage, row) in (STAGES + 1..).zip(tableau::DENSE_STAGES) {
-            slopes[stage] = system.derivative(&advanced(&start, &sum(&slopes, row), length));
+        for (stage, (row, node)) in (STAGES + 1..).zip(tableau::DENSE_STAGES.into_iter().zip(tableau::DENSE_NODES)) {
+            let time = later(self.start_time, length, node);
+            slopes[stage] = system.derivative(time, &advanced(&start, &sum(&slopes, row), length));
         }
         let increment: [f64; N] = std::array::from_fn(|i| end[i] - start[i]);
         let bend = std::array::from_fn(|i| start_derivative[i] * length - increment[i]);
@@ -175,24 +175,16 @@ impl<const N: usize> Interpolant<N> {
     }
 }
 
-/// The state at the end of steps that were taken before, from another start: the numbers may carry derivatives, which then are those
-/// of the end by what varies at the start and in the system. The steps are not chosen anew, so that their choice adds nothing.
-///
-/// # Errors
-/// When the flag is raised, at which it looks before every step.
+/// The state at the end of a step that was taken before, from another start: the numbers may carry derivatives, which then are those
+/// of the end by what varies at the start and in the system. The step is not chosen anew, so that its choice adds nothing.
 pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
-    start: [S; N],
-    steps: &[Step<N>],
-    interrupt: &AtomicBool,
-) -> Result<[S; N], IntegrationError> {
+    start: &[S; N],
+    step: &Step<N>,
+) -> [S; N] {
+    let time = S::from(step.start_time);
     let system = &Once(system);
-    steps.iter().try_fold(start, |state, step| {
-        if interrupt.load(Ordering::Relaxed) {
-            return Err(IntegrationError::Interrupted { time: step.start_time });
-        }
-        Ok(attempt(system, &state, &system.derivative(&state), step.length()).end)
-    })
+    attempt(system, time, start, &system.derivative(time, start), step.length()).end
 }
 
 /// A system whose derivative stands in the program once, not in every stage: in wide numbers it is long.
@@ -200,9 +192,15 @@ pub(super) struct Once<'a, F>(pub(super) &'a F);
 
 impl<F: System<S, N>, S: Scalar, const N: usize> System<S, N> for Once<'_, F> {
     #[inline(never)]
-    fn derivative(&self, state: &[S; N]) -> [S; N] {
-        self.0.derivative(state)
+    fn derivative(&self, time: S, state: &[S; N]) -> [S; N] {
+        self.0.derivative(time, state)
     }
+}
+
+/// The time at a part of a step.
+#[inline(always)]
+fn later<S: Scalar>(time: S, length: S::Value, part: f64) -> S {
+    time + S::one().scaled(length * part)
 }
 
 /// The state after moving with a slope for a time.

@@ -80,6 +80,21 @@ pub(super) const STAGES: [Row; 11] = [
     ],
 ];
 
+/// When the stages after the first are evaluated, in parts of the step: the sums of their rows.
+pub(super) const NODES: [f64; 11] = [
+    0.0526001519587677318785587544488,
+    0.0789002279381515978178381316732,
+    0.118350341907227396726757197510,
+    0.281649658092772603273242802490,
+    1.0 / 3.0,
+    0.25,
+    0.307692307692307692307692307692,
+    0.651282051282051282051282051282,
+    0.6,
+    0.857142857142857142857142857142,
+    1.0,
+];
+
 /// The mean slope of the step, of order 8.
 pub(super) const WEIGHTS: Row = &[
     (0, 0.0542937341165687622380535766363),
@@ -144,6 +159,9 @@ pub(super) const DENSE_STAGES: [Row; 3] = [
         (14, -9.15095847217987001081870187138),
     ],
 ];
+
+/// When they are evaluated, in parts of the step.
+pub(super) const DENSE_NODES: [f64; 3] = [0.1, 0.2, 7.0 / 9.0];
 
 /// The last four of the seven coefficients of the dense output.
 pub(super) const DENSE: [Row; 4] = [

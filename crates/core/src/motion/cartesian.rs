@@ -11,9 +11,9 @@ pub struct Cartesian<P = f64>(pub Forces<P>);
 
 impl<P: Scalar, S: Over<P>> System<S, 6> for Cartesian<P> {
     #[inline(always)]
-    fn derivative(&self, coordinates: &[S; 6]) -> [S; 6] {
+    fn derivative(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
         let state = PlanetFixed::from(*coordinates);
-        let acceleration = self.0.acceleration(&state);
+        let acceleration = self.0.acceleration(time, &state);
         PlanetFixed { position: state.velocity, velocity: acceleration }.into()
     }
 }
@@ -24,8 +24,8 @@ impl Pace<6> for Cartesian {
         [length, length, length, speed, speed, speed]
     }
 
-    fn longest_step(&self, coordinates: &[f64; 6], _: &[f64; 6]) -> f64 {
-        self.0.longest_step(&PlanetFixed::from(*coordinates))
+    fn longest_step(&self, time: f64, coordinates: &[f64; 6]) -> f64 {
+        self.0.longest_step(time, &PlanetFixed::from(*coordinates))
     }
 }
 
@@ -44,5 +44,9 @@ impl Formulation for Cartesian {
 
     fn forces(&self) -> &Forces {
         &self.0
+    }
+
+    fn forces_mut(&mut self) -> &mut Forces {
+        &mut self.0
     }
 }

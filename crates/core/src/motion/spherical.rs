@@ -1,8 +1,11 @@
 //! The spherical formulation of the thesis. It is singular at the poles, in vertical flight and at rest.
 
-use super::{Forces, Formulation, Models, Singularity, lift_fade_over_cosine};
+use nalgebra::Vector3;
+
+use super::{Directions, Forces, Formulation, Singularity, lift_fade_over_cosine};
 use crate::coordinates::{FlightPath, PlanetFixed};
 use crate::integrate::{Pace, System};
+use crate::planet::Pull;
 use crate::scalar::{Over, Scalar};
 
 /// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
@@ -10,11 +13,10 @@ use crate::scalar::{Over, Scalar};
 pub struct Spherical<P = f64>(pub Forces<P>);
 
 impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
-    /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text.
+    /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text, with forces of any direction.
     #[inline(always)]
-    fn derivative(&self, coordinates: &[S; 6]) -> [S; 6] {
-        let Forces { models: Models { planet, .. }, sin_cos_bank: (sin_sigma, cos_sigma), .. } = &self.0;
-        let (sin_sigma, cos_sigma) = (*sin_sigma, *cos_sigma);
+    fn derivative(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
+        let planet = self.0.models.planet;
         let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
             FlightPath::from(*coordinates);
         let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();
@@ -22,11 +24,12 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
         let (sin_psi, cos_psi) = heading.sin_cos();
         let omega = planet.rotation_rate;
 
-        let density = self.0.density(r - planet.shape.surface_radius(sin_phi, cos_phi));
-        let air = self.0.air(v);
-        let drag = air.drag * density;
-        let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
-        let g = planet.gravity(r);
+        let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
+        let velocity = Velocity { speed: v, sin_gamma, cos_gamma, sin_psi, cos_psi };
+        let [ahead, up, left_over_cos_gamma] = self.aerodynamic(time, altitude, r, &velocity);
+        let Pull { inward, axial } = planet.pull(r, sin_phi);
+        // Gravity towards the centre, and to the north.
+        let (g, g_north) = (inward + axial * sin_phi, -axial * cos_phi);
         // rω² cos φ
         let centrifugal = r * cos_phi * (omega * omega);
 
@@ -36,21 +39,66 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
         let longitude_rate = v * cos_gamma * cos_psi * (r * cos_phi).recip();
         // φ̇ = V cos γ sin ψ / r   (11)
         let latitude_rate = v * cos_gamma * sin_psi * r.recip();
-        // V̇ = -D/m - g sin γ + rω² cos φ (cos φ sin γ - sin φ sin ψ cos γ)   (29)
-        let v_rate = -drag - g * sin_gamma + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
-        // Vγ̇ = (L/m) cos σ - g cos γ + (V²/r) cos γ + 2Vω cos φ cos ψ + rω² cos φ (cos φ cos γ + sin φ sin ψ sin γ)   (30)
-        let gamma_rate = (lift_over_cos_gamma * cos_gamma * cos_sigma - g * cos_gamma
+        // V̇ = -D/m - g sin γ + g_N cos γ sin ψ + rω² cos φ (cos φ sin γ - sin φ sin ψ cos γ)   (29)
+        let v_rate = ahead - g * sin_gamma
+            + g_north * cos_gamma * sin_psi
+            + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
+        // Vγ̇ = (L/m) cos σ - g cos γ - g_N sin γ sin ψ + (V²/r) cos γ + 2Vω cos φ cos ψ + rω² cos φ (cos φ cos γ + sin φ sin ψ sin γ)   (30)
+        let gamma_rate = (up - g * cos_gamma - g_north * sin_gamma * sin_psi
             + v * v * r.recip() * cos_gamma
             + v * cos_phi * cos_psi * (2.0 * omega)
             + centrifugal * (cos_phi * cos_gamma + sin_phi * sin_psi * sin_gamma))
             * v.recip();
-        // Vψ̇ = L sin σ/(m cos γ) - (V²/r) cos γ cos ψ tan φ + 2Vω (sin ψ cos φ tan γ - sin φ) - (rω²/cos γ) sin φ cos φ cos ψ   (31)
-        let psi_rate = (lift_over_cos_gamma * sin_sigma
+        // Vψ̇ = L sin σ/(m cos γ) + g_N cos ψ/cos γ - (V²/r) cos γ cos ψ tan φ + 2Vω (sin ψ cos φ tan γ - sin φ) - (rω²/cos γ) sin φ cos φ cos ψ   (31)
+        let psi_rate = (left_over_cos_gamma + g_north * cos_psi * cos_gamma.recip()
             - v * v * r.recip() * cos_gamma * cos_psi * sin_phi * cos_phi.recip()
             + v * (sin_psi * cos_phi * sin_gamma * cos_gamma.recip() - sin_phi) * (2.0 * omega)
             - centrifugal * sin_phi * cos_psi * cos_gamma.recip())
             * v.recip();
         [r_rate, longitude_rate, latitude_rate, v_rate, gamma_rate, psi_rate]
+    }
+}
+
+/// A velocity relative to the planet, by its magnitude and its angles.
+struct Velocity<S> {
+    speed: S,
+    sin_gamma: S,
+    cos_gamma: S,
+    sin_psi: S,
+    cos_psi: S,
+}
+
+impl<P: Scalar> Spherical<P> {
+    /// Lift and drag over the mass, m/s²: along the velocity, across it upward, and across it to the left over cos γ.
+    #[inline(always)]
+    fn aerodynamic<S: Over<P>>(&self, time: S, altitude: S, radius: S, velocity: &Velocity<S>) -> [S; 3] {
+        let Velocity { speed, sin_gamma, cos_gamma, sin_psi, cos_psi } = *velocity;
+        // Up, east and north are axes like any others.
+        let unit = [sin_gamma, cos_gamma * cos_psi, cos_gamma * sin_psi];
+        let [up, east, north] = unit.map(|part| part * speed);
+        let position = Vector3::new(radius, S::zero(), S::zero());
+        let forces = &self.0;
+        match forces.wind(altitude) {
+            None => {
+                let still = Directions { speed, ..Directions::of(&position, &Vector3::new(up, east, north)) };
+                let flow = forces.flow_of(altitude, still, speed);
+                let (air, density) = (forces.air(time, &flow), forces.density(&flow));
+                let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
+                let (sin_sigma, cos_sigma) = forces.sin_cos_bank(time, &flow);
+                [-(air.drag * density), lift_over_cos_gamma * cos_gamma * cos_sigma, lift_over_cos_gamma * sin_sigma]
+            }
+            Some([to_east, to_north]) => {
+                let relative = Vector3::new(up, east - to_east, north - to_north);
+                let flow = forces.flow_of(altitude, Directions::of(&position, &relative), speed);
+                let force = forces.aerodynamic(time, &flow);
+                let level = force.y * cos_psi + force.z * sin_psi;
+                [
+                    force.x * sin_gamma + level * cos_gamma,
+                    force.x * cos_gamma - level * sin_gamma,
+                    (force.z * cos_psi - force.y * sin_psi) * cos_gamma.recip(),
+                ]
+            }
+        }
     }
 }
 
@@ -60,8 +108,8 @@ impl Pace<6> for Spherical {
         [length, 1.0, 1.0, speed, 1.0, 1.0]
     }
 
-    fn longest_step(&self, coordinates: &[f64; 6], _: &[f64; 6]) -> f64 {
-        self.0.longest_step(&Self::planet_fixed(coordinates))
+    fn longest_step(&self, time: f64, coordinates: &[f64; 6]) -> f64 {
+        self.0.longest_step(time, &Self::planet_fixed(coordinates))
     }
 }
 
@@ -90,5 +138,9 @@ impl Formulation for Spherical {
 
     fn forces(&self) -> &Forces {
         &self.0
+    }
+
+    fn forces_mut(&mut self) -> &mut Forces {
+        &mut self.0
     }
 }

@@ -28,9 +28,9 @@ pub struct Zonal {
 }
 
 /// An acceleration of gravity: `-inward r̂ - axial ẑ`, m/s².
-pub(super) struct Pull<S> {
-    pub(super) inward: S,
-    pub(super) axial: S,
+pub(crate) struct Pull<S> {
+    pub(crate) inward: S,
+    pub(crate) axial: S,
 }
 
 impl Zonal {

@@ -3,8 +3,8 @@
 use std::array::from_fn;
 use std::sync::atomic::AtomicBool;
 
-use super::SimulationError;
 use super::flight::Flight;
+use super::{SimulationError, arrival};
 use crate::integrate::{System, try_abreast};
 use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
 use crate::scalar::Lanes;
@@ -17,14 +17,20 @@ type End = Result<Arrival, SimulationError>;
 /// Flies scenarios, `L` of them at once, to their ends: what [`arrival`](super::arrival) gives for each, to the last digit.
 ///
 /// Every flight has steps of its own, and its lane takes the next one when it has ended. Neighbours share the lanes
-/// if their models and their formulations are the same.
+/// if their models and their formulations are the same. Where the formulas of models change on the way, a flight is flown alone,
+/// since every lane would need its own.
 pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &AtomicBool) -> Vec<End> {
     let shared = |scenario: &Scenario| (scenario.case().models(), scenario.case().solver.equations);
     let mut ends = Vec::with_capacity(scenarios.len());
     for group in scenarios.chunk_by(|a, b| shared(a) == shared(b)) {
-        ends.extend(match group.first().map(|scenario| scenario.case().solver.equations) {
-            Some(Equations::Spherical) => fly_abreast::<_, _, L>(group, interrupt, Spherical, Spherical),
-            _ => fly_abreast::<_, _, L>(group, interrupt, Cartesian, Cartesian),
+        let Some(case) = group.first().map(Scenario::case) else { continue };
+        if case.forces().has_switches() {
+            ends.extend(group.iter().map(|scenario| arrival(scenario, interrupt)));
+            continue;
+        }
+        ends.extend(match case.solver.equations {
+            Equations::Cartesian => fly_abreast::<_, _, L>(group, interrupt, Cartesian, Cartesian),
+            Equations::Spherical => fly_abreast::<_, _, L>(group, interrupt, Spherical, Spherical),
         });
     }
     ends
@@ -37,17 +43,17 @@ struct Lane<'a, F> {
 }
 
 /// Flies scenarios of the same models in a formulation, of which each has one `alone` and all lanes have one `abreast`.
-fn fly_abreast<F: Formulation, M: System<Lanes<L>, 6>, const L: usize>(
-    scenarios: &[Scenario],
-    interrupt: &AtomicBool,
+fn fly_abreast<'a, F: Formulation, M: System<Lanes<L>, 6>, const L: usize>(
+    scenarios: &'a [Scenario],
+    interrupt: &'a AtomicBool,
     alone: impl Fn(Forces) -> F,
     abreast: impl Fn(Forces<Lanes<L>>) -> M,
 ) -> Vec<End> {
-    let motions: Vec<F> = scenarios.iter().map(|scenario| alone(scenario.case().forces())).collect();
     let mut ends: Vec<End> = scenarios.iter().map(|_| Err(SimulationError::Interrupted { time: 0.0 })).collect();
-    let mut waiting = scenarios.iter().zip(&motions).enumerate();
+    let mut waiting = scenarios.iter().enumerate();
     let mut next = |ends: &mut [End]| {
-        waiting.find_map(|(index, (scenario, motion))| match Flight::start(scenario, motion, interrupt) {
+        let start = |scenario: &'a Scenario| Flight::start(scenario, alone(scenario.case().forces()), interrupt);
+        waiting.find_map(|(index, scenario)| match start(scenario) {
             Ok(flight) if !scenario.ends_at_start() => Some(Lane { index, flight }),
             other => {
                 ends[index] = other.map(|flight| flight.at_start());
@@ -60,8 +66,11 @@ fn fly_abreast<F: Formulation, M: System<Lanes<L>, 6>, const L: usize>(
     while lanes.iter().any(Option::is_some) {
         let cases = lanes.each_ref().map(|lane| scenarios[lane.as_ref().map_or(0, |lane| lane.index)].case());
         let abreast = system.get_or_insert_with(|| abreast(forces(cases)));
-        let integrators = lanes.each_mut().map(|lane| lane.as_mut().map(|lane| &mut lane.flight.integrator));
-        let steps = try_abreast(abreast, integrators, cases.map(|case| case.stop.time));
+        let flights = lanes.each_mut().map(|lane| {
+            let Flight { integrator, motion, scenario, .. } = &mut lane.as_mut()?.flight;
+            Some((integrator, &*motion, scenario.case().stop.time))
+        });
+        let steps = try_abreast(abreast, flights);
         for (lane, step) in lanes.iter_mut().zip(steps) {
             let (Some(Lane { index, flight }), Some(step)) = (lane.as_mut(), step) else { continue };
             let end = match step {

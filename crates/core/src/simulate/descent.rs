@@ -2,10 +2,9 @@
 
 use num_dual::Dual64;
 
-use super::passage::Passage;
-use crate::coordinates::PlanetFixed;
+use super::passage::{Moment, Passage};
 use crate::integrate::{Integrator, Step, event};
-use crate::motion::{Formulation, moving};
+use crate::motion::Formulation;
 use crate::planet::Shape;
 
 /// The height above the stop altitude, with its rate, at the end of the last step.
@@ -17,10 +16,9 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    pub(super) fn new<F: Formulation>(motion: &F, stop_altitude: f64, state: &[f64; 6], derivative: &[f64; 6]) -> Self {
-        let shape = motion.forces().planet().shape;
+    pub(super) fn new(shape: Shape, stop_altitude: f64, start: &Moment) -> Self {
         let mut descent = Self { shape, stop_altitude, above: Dual64::from(0.0) };
-        descent.above = descent.height(&F::planet_fixed(&moving(state, derivative)));
+        descent.above = descent.height(start);
         descent
     }
 
@@ -29,44 +27,47 @@ impl Descent {
         self.above.eps = self.above.eps.max(f64::MIN_POSITIVE);
     }
 
-    /// The time at which a step crosses the stop altitude for the first time downwards, a dip inside the step included.
-    pub(super) fn impact<F: Formulation>(&mut self, passage: &Passage<F>) -> Option<f64> {
-        let step = passage.step;
+    /// The part of a step at which it crosses the stop altitude for the first time downwards, a dip inside the step included.
+    pub(super) fn impact<F: Formulation>(&self, passage: &Passage<F>) -> Option<f64> {
         let end = self.height(&passage.end());
-        let start = std::mem::replace(&mut self.above, end);
-        let part = event::first_fall(start, end, step.length(), |part| self.height(&passage.inside(part)));
-        part.map(|part| step.time(part))
+        event::first_fall(self.above, end, passage.step.length(), |part| self.height(&passage.inside(part)))
     }
 
-    /// Repeats the step so that it ends on the stop altitude, which the dense output crosses at `time`.
-    ///
-    /// The repeated step is more accurate than the dense output: its own crossing is found by Newton's method.
-    pub(super) fn land<F: Formulation>(
-        &self,
-        integrator: &mut Integrator<'_, F, 6>,
-        step: &Step<6>,
-        mut time: f64,
-    ) -> Step<6> {
-        let mut landing = integrator.shorten(step, time);
-        for _ in 0..5 {
-            let above = self.height(&F::planet_fixed(&moving(&landing.end, &landing.end_derivative)));
-            // How long before the end of the step its tangent there passes the stop altitude.
-            let late = above.re / above.eps;
-            if late.abs() <= 1e-6 * landing.length() {
-                // So near, the motion is a straight line to rounding.
-                landing.move_end(-late);
-                break;
-            }
-            if late.abs() > 0.5 * landing.length() || !late.is_finite() {
-                break;
-            }
-            time -= late;
-            landing = integrator.shorten(step, time);
+    /// Goes to the end of a step.
+    pub(super) fn follow<F: Formulation>(&mut self, passage: &Passage<F>) {
+        self.above = self.height(&passage.end());
+    }
+
+    pub(super) fn height(&self, moment: &Moment) -> Dual64 {
+        self.shape.altitude(&moment.state.position) - self.stop_altitude
+    }
+}
+
+/// Repeats a step so that it ends where a quantity is zero, which the dense output crosses at `time`.
+///
+/// The repeated step is more accurate than the dense output: its own crossing is found by Newton's method.
+pub(super) fn land<F: Formulation>(
+    integrator: &mut Integrator<'_, 6>,
+    motion: &F,
+    step: &Step<6>,
+    mut time: f64,
+    quantity: impl Fn(&Moment) -> Dual64,
+) -> Step<6> {
+    let mut landing = integrator.shorten(motion, step, time);
+    for _ in 0..5 {
+        let above = quantity(&Passage::new(motion, &landing).end());
+        // How long before the end of the step its tangent there passes zero.
+        let late = above.re / above.eps;
+        if late.abs() <= 1e-6 * landing.length() {
+            // So near, the motion is a straight line to rounding.
+            landing.move_end(-late);
+            break;
         }
-        landing
+        if late.abs() > 0.5 * landing.length() || !late.is_finite() {
+            break;
+        }
+        time -= late;
+        landing = integrator.shorten(motion, step, time);
     }
-
-    fn height(&self, state: &PlanetFixed<Dual64>) -> Dual64 {
-        self.shape.altitude(&state.position) - self.stop_altitude
-    }
+    landing
 }

@@ -1,64 +1,96 @@
-//! The extremes of the flight: its peaks, and whether it came near the vertical.
+//! The extremes of the flight: its peaks, and what its user should be warned of.
 
 use num_dual::Dual64;
 
 use super::SimulationError;
-use super::passage::Passage;
-use crate::coordinates::PlanetFixed;
-use crate::integrate::event;
-use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, cos_squared_flight_path_angle, moving};
+use super::passage::{Moment, Passage};
+use crate::integrate::{Integrator, event};
+use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Regime};
 use crate::trajectory::{Peak, Peaks, Warning};
 
 /// What was seen so far, and the loads with their rates at the end of the last step.
 pub(super) struct Extremes {
     loads: Loads<Dual64>,
-    /// Cosine squared of the flight-path angle less that of the cone in which lift fades; none where there is no lift.
+    regime: Regime,
+    /// Cosine squared of the angle of the flight against the air less that of the cone in which lift fades; none where there is no lift.
     cone: Option<Dual64>,
+    faded: bool,
     pub(super) peaks: Peaks,
     pub(super) warnings: Vec<Warning>,
 }
 
 impl Extremes {
-    pub(super) fn new<F: Formulation>(motion: &F, has_lift: bool, start: &[f64; 6]) -> Result<Self, SimulationError> {
-        let state = F::planet_fixed(&moving(start, &motion.derivative(start)));
-        let loads = finite_loads(motion.forces(), 0.0, &state)?;
+    pub(super) fn new<F: Formulation>(
+        motion: &F,
+        integrator: &Integrator<6>,
+        has_lift: bool,
+    ) -> Result<Self, SimulationError> {
+        let forces = motion.forces();
+        let start = Moment::of::<F>(0.0, integrator.state(), integrator.derivative());
+        let loads = finite_loads(forces, &start)?;
         let peak = |quantity: Dual64| Peak { value: quantity.re, time: 0.0, altitude: loads.altitude.re };
         let peaks = Peaks {
             deceleration: peak(loads.deceleration),
             load_factor: peak(loads.load_factor),
             dynamic_pressure: peak(loads.dynamic_pressure),
             altitude: peak(loads.altitude),
-            mach: None,
+            mach: loads.mach.map(peak),
         };
-        let cone = has_lift.then(|| outside_cone(&state));
-        let in_cone = cone.is_some_and(|cone| cone.re < 0.0);
-        let warnings = if in_cone { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
-        Ok(Self { loads, cone, peaks, warnings })
+        let cone = has_lift.then(|| outside_cone(forces, &start));
+        let faded = cone.is_some_and(|cone| cone.re < 0.0);
+        let warnings = if faded { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
+        let mut extremes = Self { loads, regime: forces.regime(), cone, faded, peaks, warnings };
+        extremes.warn_outside_tables(forces, 0.0);
+        Ok(extremes)
     }
 
     /// Notes the peaks and warnings of a step.
-    pub(super) fn observe<F: Formulation>(&mut self, motion: &F, passage: &Passage<F>) -> Result<(), SimulationError> {
+    pub(super) fn observe<F: Formulation>(&mut self, passage: &Passage<F>) -> Result<(), SimulationError> {
+        let forces = passage.motion.forces();
+        if forces.regime() != self.regime {
+            // The loads may jump where a formula changes.
+            self.regime = forces.regime();
+            self.loads = finite_loads(forces, &passage.start())?;
+            self.warn_outside_tables(forces, passage.step.start_time);
+        }
         let end = passage.end();
-        let loads = finite_loads(motion.forces(), passage.step.end_time, &end)?;
+        let loads = finite_loads(forces, &end)?;
         let start = std::mem::replace(&mut self.loads, loads);
-        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, .. } = &mut self.peaks;
-        let inside = |part| motion.forces().loads(&passage.inside(part));
+        let inside = |part| loads_at(forces, &passage.inside(part));
         let time = |part| passage.step.time(part);
+        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach } = &mut self.peaks;
         raise(deceleration, &start, &loads, inside, time, |loads| loads.deceleration);
         raise(load_factor, &start, &loads, inside, time, |loads| loads.load_factor);
         raise(dynamic_pressure, &start, &loads, inside, time, |loads| loads.dynamic_pressure);
         raise(altitude, &start, &loads, inside, time, |loads| loads.altitude);
+        if let Some(mach) = mach {
+            raise(mach, &start, &loads, inside, time, |loads| loads.mach.unwrap_or(Dual64::from(0.0)));
+        }
         if let Some(before) = self.cone
-            && self.warnings.is_empty()
+            && !self.faded
         {
-            let after = outside_cone(&end);
+            let after = outside_cone(forces, &end);
             self.cone = Some(after);
-            let inside = |part| outside_cone(&passage.inside(part));
+            let inside = |part| outside_cone(forces, &passage.inside(part));
             if let Some(part) = event::first_fall(before, after, passage.step.length(), inside) {
+                self.faded = true;
                 self.warnings.push(Warning::LiftFadedNearVertical { time: time(part) });
             }
         }
         Ok(())
+    }
+
+    /// Warns of every table outside which the present regime lies, once an edge.
+    fn warn_outside_tables(&mut self, forces: &Forces, time: f64) {
+        for (table, edge, above) in forces.outside_tables() {
+            let known = |warning: &Warning| {
+                matches!(warning, Warning::OutsideTable { table: of, above: side, .. } if (*of, *side) == (table, above))
+            };
+            if !self.warnings.iter().any(known) {
+                let altitude = self.loads.altitude.re;
+                self.warnings.push(Warning::OutsideTable { table, time, altitude, edge, above });
+            }
+        }
     }
 }
 
@@ -75,22 +107,29 @@ fn raise(
     let top = event::maximum(before, after, |part| quantity(&inside(part)))
         .map(|part| (part, inside(part)))
         .filter(|(_, top)| quantity(top).re > after.re);
-    let (part, at) = top.unwrap_or((1.0, *end));
-    let value = quantity(&at).re;
-    if value > peak.value {
-        *peak = Peak { value, time: time(part), altitude: at.altitude.re };
+    // The start counts where the quantity has jumped.
+    for (part, at) in [(0.0, *start), top.unwrap_or((1.0, *end))] {
+        let value = quantity(&at).re;
+        if value > peak.value {
+            *peak = Peak { value, time: time(part), altitude: at.altitude.re };
+        }
     }
 }
 
 /// The loads, of which every one must be a finite number.
-fn finite_loads(forces: &Forces, time: f64, state: &PlanetFixed<Dual64>) -> Result<Loads<Dual64>, SimulationError> {
-    let loads = forces.loads(state);
-    let Loads { altitude, density, dynamic_pressure, deceleration, load_factor, .. } = loads;
-    let finite = [altitude, density, dynamic_pressure, deceleration, load_factor].iter().all(|x| x.re.is_finite());
-    if finite { Ok(loads) } else { Err(SimulationError::Overflow { time }) }
+fn finite_loads(forces: &Forces, moment: &Moment) -> Result<Loads<Dual64>, SimulationError> {
+    let loads = loads_at(forces, moment);
+    let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor } = loads;
+    let always = [altitude, density, air_speed, dynamic_pressure, deceleration, load_factor];
+    let finite = always.into_iter().chain(mach).all(|x| x.re.is_finite());
+    if finite { Ok(loads) } else { Err(SimulationError::Overflow { time: moment.time.re }) }
+}
+
+fn loads_at(forces: &Forces, moment: &Moment) -> Loads<Dual64> {
+    forces.loads(moment.time, &moment.state)
 }
 
 /// Positive outside the cone about the vertical in which lift fades: cos²γ - ε².
-fn outside_cone(state: &PlanetFixed<Dual64>) -> Dual64 {
-    cos_squared_flight_path_angle(state) - LIFT_FADE_ANGLE * LIFT_FADE_ANGLE
+fn outside_cone(forces: &Forces, moment: &Moment) -> Dual64 {
+    forces.cos_squared_angle_to_air(&moment.state) - LIFT_FADE_ANGLE * LIFT_FADE_ANGLE
 }

@@ -3,19 +3,21 @@
 use std::sync::atomic::AtomicBool;
 
 use super::SimulationError;
-use super::descent::Descent;
-use super::passage::Passage;
+use super::descent::{Descent, land};
+use super::passage::{Moment, Passage};
+use super::watch::{Watch, next_corner};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
-use crate::motion::Formulation;
+use crate::motion::{Chatter, Formulation};
 use crate::scenario::Scenario;
 use crate::trajectory::{Arrival, Termination};
 
 /// A flight between its start and its end.
 pub(super) struct Flight<'a, F> {
-    scenario: &'a Scenario,
-    motion: &'a F,
-    pub(super) integrator: Integrator<'a, F, 6>,
+    pub(super) scenario: &'a Scenario,
+    pub(super) motion: F,
+    pub(super) integrator: Integrator<'a, 6>,
     descent: Descent,
+    watch: Watch,
     time: f64,
     state: [f64; 6],
     looks: usize,
@@ -24,20 +26,23 @@ pub(super) struct Flight<'a, F> {
 impl<'a, F: Formulation> Flight<'a, F> {
     pub(super) fn start(
         scenario: &'a Scenario,
-        motion: &'a F,
+        mut motion: F,
         interrupt: &'a AtomicBool,
     ) -> Result<Self, SimulationError> {
         let case = scenario.case();
         let limits =
             Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
         let state = F::coordinates(&case.initial_state);
-        regular(motion, 0.0, &state)?;
-        let integrator = Integrator::new(motion, state, limits);
-        let mut descent = Descent::new(motion, case.stop.altitude, &state, integrator.derivative());
+        regular(&motion, 0.0, &state)?;
+        settle(&mut motion, 0.0, &state)?;
+        let integrator = Integrator::new(&motion, state, limits);
+        let start = Moment::of::<F>(0.0, &state, integrator.derivative());
+        let mut descent = Descent::new(case.planet.shape, case.stop.altitude, &start);
         if scenario.rises_from_stop_altitude() {
             descent.start_upward();
         }
-        Ok(Self { scenario, motion, integrator, descent, time: 0.0, state, looks: 0 })
+        let watch = Watch::new(motion.forces(), &start);
+        Ok(Self { scenario, motion, integrator, descent, watch, time: 0.0, state, looks: 0 })
     }
 
     /// The end of a flight that is over before its first step: it starts on the stop altitude, and not upward.
@@ -45,25 +50,61 @@ impl<'a, F: Formulation> Flight<'a, F> {
         self.arrival(Termination::SurfaceImpact)
     }
 
-    /// Looks at a step, which it cuts at the stop altitude; returns the end of the flight, if that was it.
+    /// When the next step must end at the latest, s: with the time of the flight, or with a stretch of a schedule.
+    pub(super) fn horizon(&self) -> f64 {
+        let end = self.scenario.case().stop.time;
+        if self.motion.forces().has_switches() { end.min(next_corner(self.motion.forces())) } else { end }
+    }
+
+    /// Takes a step.
+    pub(super) fn advance(&mut self) -> Result<Step<6>, SimulationError> {
+        let horizon = self.horizon();
+        self.integrator.advance(&self.motion, horizon).map_err(|error| self.failure(error))
+    }
+
+    /// Looks at a step, which it cuts at the stop altitude and where the formulas of the models change; returns the end of the flight,
+    /// if that was it.
     pub(super) fn pass(
         &mut self,
         mut step: Step<6>,
         observe: &mut impl FnMut(&Passage<F>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
+        let Self { motion, integrator, descent, watch, .. } = self;
         let mut termination = (step.end_time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
-        let mut passage = Passage::new(self.motion, &step);
-        if let Some(crossing) = self.descent.impact(&passage) {
+        let mut turns = step.end_time >= next_corner(motion.forces());
+        let mut passage = Passage::new(motion, &step);
+        let impact = descent.impact(&passage);
+        let exit = watch.exit(&passage).filter(|exit| impact.is_none_or(|impact| exit.part < impact));
+        if let Some(part) = exit.map(|exit| exit.part).or(impact) {
             self.looks += passage.evaluations();
-            step = self.descent.land(&mut self.integrator, &step, crossing);
-            passage = Passage::new(self.motion, &step);
-            termination = Some(Termination::SurfaceImpact);
+            let time = step.time(part);
+            step = land(integrator, motion, &step, time, |moment| match &exit {
+                Some(exit) => exit.inside(motion.forces(), moment),
+                None => descent.height(moment),
+            });
+            passage = Passage::new(motion, &step);
+            termination = exit.is_none().then_some(Termination::SurfaceImpact);
+            turns = exit.is_some();
         }
+        descent.follow(&passage);
+        watch.follow(&passage);
         (self.time, self.state) = (passage.step.end_time, passage.step.end);
-        regular(self.motion, self.time, &self.state)?;
+        regular(motion, self.time, &self.state)?;
         observe(&passage)?;
         self.looks += passage.evaluations();
+        if turns && termination.is_none() {
+            self.turn(&step)?;
+        }
         Ok(termination.map(|termination| self.arrival(termination)))
+    }
+
+    /// Goes on from the end of a step in the regime that begins there.
+    fn turn(&mut self, step: &Step<6>) -> Result<(), SimulationError> {
+        settle(&mut self.motion, step.end_time, &step.end)?;
+        self.integrator.restart(&self.motion, step);
+        let start = Moment::of::<F>(step.end_time, &step.end, self.integrator.derivative());
+        self.watch = Watch::new(self.motion.forces(), &start);
+        Ok(())
     }
 
     /// What an integration error means for the flight: near a singularity, that is the reason.
@@ -84,6 +125,12 @@ impl<'a, F: Formulation> Flight<'a, F> {
         statistics.evaluations += self.looks;
         Arrival { termination, time: self.time, state: F::planet_fixed(&self.state), statistics }
     }
+}
+
+/// Enters the regime of a state.
+fn settle<F: Formulation>(motion: &mut F, time: f64, state: &[f64; 6]) -> Result<(), SimulationError> {
+    let state = F::planet_fixed(state);
+    motion.forces_mut().settle(time, &state).map_err(|Chatter(switch)| SimulationError::Chatter { time, switch })
 }
 
 /// Refuses a state in which the equations break down.

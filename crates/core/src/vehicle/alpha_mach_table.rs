@@ -41,3 +41,10 @@ impl AlphaMachTable {
         &self.mach_range
     }
 }
+
+impl AlphaMachTable {
+    /// stub
+    pub fn coefficients<S: crate::scalar::Scalar>(&self, _: [usize; 2], _: S, _: S, _: [&interpolation::Hint; 2]) -> super::Coefficients<S> {
+        super::Coefficients { lift: S::zero(), drag: S::zero() }
+    }
+}

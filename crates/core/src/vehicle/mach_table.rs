@@ -23,3 +23,10 @@ impl MachTable {
         &self.range
     }
 }
+
+impl MachTable {
+    /// stub
+    pub fn coefficients<S: crate::scalar::Scalar>(&self, _: usize, _: S, _: &interpolation::Hint) -> super::Coefficients<S> {
+        super::Coefficients { lift: S::zero(), drag: S::zero() }
+    }
+}

@@ -1,0 +1,223 @@
+//! Where the models change their formulas, and on which side of these places a flight is.
+//!
+//! A step of the integration must not see such a change: an integrator that does grinds its steps down. While a step is taken, the
+//! regime therefore stays what it is, and every formula goes on beyond its own stretch; the flight looks for the instant at which it
+//! leaves the stretch, ends the step there, and [settles](super::Forces::settle) in the next regime.
+
+use num_dual::Dual64;
+
+use super::{Flow, Forces};
+use crate::atmosphere::Atmosphere;
+use crate::control::Against;
+use crate::coordinates::PlanetFixed;
+use crate::scalar::{Over, Scalar};
+use crate::vehicle::Aerodynamics;
+use crate::wind::Wind;
+
+/// What may change its formula during a flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Switch {
+    /// The atmosphere, from layer to layer.
+    Atmosphere,
+    /// The wind, at the ends of its table.
+    Wind,
+    /// The aerodynamics, at the ends of their Mach numbers.
+    Mach,
+    /// The aerodynamics, at the ends of their angles of attack.
+    TableAngleOfAttack,
+    /// The bank angle, at the corners of its schedule.
+    BankAngle,
+    /// The angle of attack, at the corners of its schedule.
+    AngleOfAttack,
+}
+
+/// A table, and the quantity by which something is looked up in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lookup {
+    /// The atmosphere by altitude; outside, the logarithm of its density goes on in a straight line.
+    Atmosphere,
+    /// The wind by altitude.
+    Wind,
+    /// The aerodynamics by Mach number.
+    Mach,
+    /// The aerodynamics by angle of attack.
+    AngleOfAttack,
+}
+
+/// By what a formula changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    /// What a schedule runs along.
+    Along(Against),
+    /// α, rad.
+    AngleOfAttack,
+}
+
+/// Of every switch the stretch of its formula that holds: 0 before the first boundary, 1 after it, and so on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Regime([usize; Switch::ALL.len()]);
+
+/// The regimes on both sides of a boundary lead back across it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Chatter(pub(crate) Switch);
+
+impl Switch {
+    /// All of them.
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Atmosphere, Self::Wind, Self::Mach, Self::TableAngleOfAttack, Self::BankAngle, Self::AngleOfAttack];
+}
+
+impl Regime {
+    /// The stretch of a switch.
+    #[inline(always)]
+    pub(crate) fn of(&self, switch: Switch) -> usize {
+        self.0[switch as usize]
+    }
+}
+
+impl Quantity {
+    /// So near a boundary a flight counts as on it, and belongs to the side to which it moves: far more than a rounding, far less than
+    /// anybody sees; s, m, m/s, a Mach number or rad.
+    fn resolution(self) -> f64 {
+        match self {
+            Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack => 1e-9,
+            Self::Along(Against::Altitude | Against::Speed) => 1e-6,
+        }
+    }
+}
+
+impl<P: Scalar> Forces<P> {
+    /// The regime that holds.
+    pub fn regime(&self) -> Regime {
+        self.regime
+    }
+
+    /// Changes to another regime.
+    pub fn enter(&mut self, regime: Regime) {
+        self.regime = regime;
+    }
+
+    /// Whether any of the models changes its formula anywhere.
+    pub fn has_switches(&self) -> bool {
+        self.has_switches
+    }
+
+    /// By what a switch turns, and at which values, ascending; none where it never does.
+    pub(crate) fn boundaries(&self, switch: Switch) -> Option<(Quantity, &[f64])> {
+        const ALTITUDE: Quantity = Quantity::Along(Against::Altitude);
+        const MACH: Quantity = Quantity::Along(Against::Mach);
+        fn along((against, corners): (Against, &[f64])) -> (Quantity, &[f64]) {
+            (Quantity::Along(against), corners)
+        }
+        let boundaries = match switch {
+            Switch::Atmosphere => Some((ALTITUDE, self.models.atmosphere.boundaries())),
+            Switch::Wind => match &self.models.wind {
+                Wind::Still | Wind::Constant { .. } => None,
+                Wind::Table(table) => Some((ALTITUDE, &table.range()[..])),
+            },
+            Switch::Mach => match &self.models.aerodynamics {
+                Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => None,
+                Aerodynamics::MachTable(table) => Some((MACH, &table.range()[..])),
+                Aerodynamics::AlphaMachTable(table) => Some((MACH, &table.mach_range()[..])),
+            },
+            Switch::TableAngleOfAttack => match &self.models.aerodynamics {
+                Aerodynamics::AlphaMachTable(table) => Some((Quantity::AngleOfAttack, &table.angle_of_attack_range()[..])),
+                _ => None,
+            },
+            Switch::BankAngle => self.models.control.bank_angle.corners().map(along),
+            Switch::AngleOfAttack => self.models.control.angle_of_attack.corners().map(along),
+        };
+        boundaries.filter(|(_, boundaries)| !boundaries.is_empty())
+    }
+
+    /// Of every switch the quantity in a state; zero where there is none.
+    pub(crate) fn readings<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> [S; Switch::ALL.len()] {
+        if !self.has_switches {
+            return [S::zero(); Switch::ALL.len()];
+        }
+        let flow = self.flow(state);
+        Switch::ALL.map(|switch| match self.boundaries(switch) {
+            Some((quantity, _)) => self.quantity_of(quantity, time, &flow),
+            None => S::zero(),
+        })
+    }
+
+    fn quantity_of<S: Over<P>>(&self, quantity: Quantity, time: S, flow: &Flow<S>) -> S {
+        match quantity {
+            Quantity::Along(against) => flow.quantity(against, time),
+            Quantity::AngleOfAttack => self.angle_of_attack(time, flow),
+        }
+    }
+}
+
+impl Forces {
+    /// The tables outside which the present regime lies: the edge beyond which it does, and whether that is above it.
+    pub(crate) fn outside_tables(&self) -> impl Iterator<Item = (Lookup, f64, bool)> {
+        let tables = [
+            (Switch::Atmosphere, Lookup::Atmosphere, matches!(self.models.atmosphere, Atmosphere::Table(_))),
+            (Switch::Wind, Lookup::Wind, true),
+            (Switch::Mach, Lookup::Mach, true),
+            (Switch::TableAngleOfAttack, Lookup::AngleOfAttack, true),
+        ];
+        tables.into_iter().filter(|(.., is_table)| *is_table).filter_map(|(switch, table, _)| {
+            let (_, range) = self.boundaries(switch)?;
+            let stretch = self.regime.of(switch);
+            // Below the first boundary or above the last; a table of one entry has nothing to leave.
+            match stretch {
+                0 => Some((table, *range.first()?, false)),
+                _ if stretch == range.len() => Some((table, *range.last()?, true)),
+                _ => None,
+            }
+        })
+    }
+
+    /// Which switch leads from the present regime to the next one, in a state at their boundary: that which is nearest to its own.
+    pub(crate) fn first_to_turn(&self, next: Regime, time: f64, state: &PlanetFixed<f64>) -> Option<Switch> {
+        let readings = self.readings(time, state);
+        let distance = |switch: &Switch| {
+            let (quantity, boundaries) = self.boundaries(*switch)?;
+            let (now, then) = (self.regime.of(*switch), next.of(*switch));
+            let boundary = boundaries.get(if then > now { now } else { now.checked_sub(1)? })?;
+            (now != then).then(|| (readings[*switch as usize] - boundary).abs() / quantity.resolution())
+        };
+        let turning = Switch::ALL.into_iter().filter_map(|switch| Some((switch, distance(&switch)?)));
+        turning.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(switch, _)| switch)
+    }
+
+    /// Enters the regime of a state and of where it moves next.
+    ///
+    /// # Errors
+    /// When there is none: on either side of a boundary the motion leads back across it.
+    pub(crate) fn settle(&mut self, time: f64, state: &PlanetFixed<f64>) -> Result<(), Chatter> {
+        if !self.has_switches {
+            return Ok(());
+        }
+        let mut turned = Switch::Atmosphere;
+        // A switch may turn another one: the angle of attack that of its table.
+        for _ in 0..=Switch::ALL.len() {
+            let regime = self.regime_ahead(time, state);
+            let Some(switch) = Switch::ALL.into_iter().find(|switch| regime.of(*switch) != self.regime.of(*switch)) else {
+                return Ok(());
+            };
+            (turned, self.regime) = (switch, regime);
+        }
+        Err(Chatter(turned))
+    }
+
+    /// The regime to which the forces of the present one lead.
+    fn regime_ahead(&self, time: f64, state: &PlanetFixed<f64>) -> Regime {
+        let acceleration = self.acceleration(time, state);
+        let moving = PlanetFixed {
+            position: state.position.zip_map(&state.velocity, Dual64::new),
+            velocity: state.velocity.zip_map(&acceleration, Dual64::new),
+        };
+        let readings = self.readings(Dual64::new(time, 1.0), &moving);
+        Regime(Switch::ALL.map(|switch| {
+            let Some((quantity, boundaries)) = self.boundaries(switch) else { return 0 };
+            let now = readings[switch as usize];
+            let resolution = quantity.resolution();
+            let ahead = if now.eps < 0.0 { now.re - resolution } else { now.re + resolution };
+            boundaries.partition_point(|boundary| *boundary <= ahead)
+        }))
+    }
+}
