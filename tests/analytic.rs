@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use reentry::analytic::{Comparison, End, Fault, Prediction, Solution, Theory};
 use reentry::trajectory::{FlightPoint, Sampling, Termination};
-use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Stop, Vehicle};
+use reentry::{Control, Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Stop, Vehicle};
 
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, random_entry, target_2, vehicle};
@@ -32,7 +32,7 @@ fn table(number: u8, planet: Planet) -> Case {
     // The longitude does not matter.
     let entry = FlightPath { radius, longitude: 0.0, geocentric_latitude: latitude, speed, flight_path_angle, heading };
     let initial_state = entry.to_planet_fixed();
-    Case { planet: planet.spherical(), vehicle: body, bank_angle: 0.0, initial_state, ..target_2() }
+    Case { planet: planet.spherical(), vehicle: body, control: Control::banked(0.0), initial_state, ..target_2() }
 }
 
 fn at_rest(planet: Planet) -> Planet {
@@ -44,7 +44,7 @@ fn theory(solution: Solution, case: Case) -> Theory {
 }
 
 fn compare(solution: Solution, case: Case, rows: usize) -> (Vec<FlightPoint>, Comparison) {
-    let flight = fly(case);
+    let flight = fly(case.clone());
     let points = flight.points(&flight.instants(&Sampling::Count(rows), rows).unwrap());
     let comparison = theory(solution, case).compare(&flight, &points, &AtomicBool::new(false)).unwrap();
     (points, comparison)
@@ -116,8 +116,8 @@ fn theory_and_simulation_differ_as_much_as_they_should() {
 
 /// A state whose density has the given η, for a vehicle of this case; all else is of no account to the theories but for Loh's.
 fn at(case: &Case, eta: f64, speed: f64) -> FlightPoint {
-    let mut point = fly(Case { stop: Stop { altitude: 0.0, time: 1e-3 }, ..*case }).initial();
-    let Aerodynamics::Constant { drag_coefficient, .. } = case.vehicle.aerodynamics;
+    let mut point = fly(Case { stop: Stop { altitude: 0.0, time: 1e-3 }, ..case.clone() }).initial();
+    let Aerodynamics::Constant { drag_coefficient, .. } = case.vehicle.aerodynamics else { panic!("{case:?}") };
     let beta = 1.0 / case.atmosphere.scale_height();
     // (76) η = ρSC_D / (2mβ)
     point.loads.density = eta * 2.0 * case.vehicle.mass * beta / (case.vehicle.reference_area * drag_coefficient);
@@ -134,7 +134,7 @@ fn values(prediction: Prediction, eta: f64) -> [f64; 3] {
 
 /// V² and γ, and their slopes by η.
 fn slopes(solution: Solution, case: Case, eta: f64) -> [f64; 4] {
-    let theory = theory(solution, case);
+    let theory = theory(solution, case.clone());
     let at = |eta: f64| values(theory.prediction(&at(&case, eta, 0.0)).unwrap(), eta);
     let [speed_squared, gamma, drag] = at(eta);
     relative("equations 79, 83 and 90", drag, 1.0, 1e-14);
@@ -150,7 +150,7 @@ fn slopes(solution: Solution, case: Case, eta: f64) -> [f64; 4] {
 fn steep_glide_solves_the_equations_of_lift_and_drag() {
     let case = table(5, LISTING);
     for eta in [1e-4, 1e-3, 5e-3, 1e-2] {
-        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::SteepGlide, case, eta);
+        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::SteepGlide, case.clone(), eta);
         relative("d(cos γ)/dη", -gamma.sin() * gamma_slope, 3.0, 1e-7);
         relative("dV²/dη", speed_slope, 2.0 * speed_squared / gamma.sin(), 1e-5);
     }
@@ -161,7 +161,7 @@ fn steep_glide_solves_the_equations_of_lift_and_drag() {
 fn a_steep_glide_keeps_its_digits_as_lift_vanishes() {
     for lift in [1e-6, 1e-12, 1e-18, 1e-100, -1e-100] {
         let case = Case { vehicle: vehicle(50.0, 0.01, lift, 0.01), ..table(5, LISTING) };
-        let prediction = theory(Solution::SteepGlide, case).prediction(&at(&case, 0.05, 0.0)).unwrap();
+        let prediction = theory(Solution::SteepGlide, case.clone()).prediction(&at(&case, 0.05, 0.0)).unwrap();
         let eta_e = 1.547_93 * (-100_003.0 * BETA).exp() * 0.01 * 0.01 / (2.0 * 50.0 * BETA);
         let expected = 5372.0 * ((0.05 - eta_e) / (-85.0_f64).to_radians().sin()).exp();
         // The lift turns the flight by k(η - η_e): 1e-4 · 0.05 at most.
@@ -182,7 +182,7 @@ fn steep_ballistic_solves_the_equation_of_drag_and_gravity() {
         // So small that the method follows the light body: α times the step stays below 0.4.
         let steps = 400_000;
         let step = (eta(0.0).ln() - log) / f64::from(steps);
-        let theory = theory(Solution::SteepBallistic, case);
+        let theory = theory(Solution::SteepBallistic, case.clone());
         for i in 1..=steps {
             let k1 = slope(log, speed_squared);
             let k2 = slope(log + 0.5 * step, speed_squared + 0.5 * step * k1);
@@ -222,7 +222,7 @@ fn medium_glide_is_consistent_with_itself_and_its_equation() {
     let case = table(7, LISTING);
     let excess = (1.0 - 9.798 * 6_378_137.0 / 9847.0_f64.powi(2)) / (BETA * 6_378_137.0);
     for eta in [1e-3, 1e-2, 0.1, 0.5] {
-        let [speed_squared, gamma, _, gamma_slope] = slopes(Solution::MediumGlide, case, eta);
+        let [speed_squared, gamma, _, gamma_slope] = slopes(Solution::MediumGlide, case.clone(), eta);
         let turning = -gamma * gamma_slope;
         relative("K", turning, 0.25 + excess / eta, 1e-6);
         let fall = 2.0 * ((-35.0_f64).to_radians() - gamma) / turning;
@@ -233,7 +233,7 @@ fn medium_glide_is_consistent_with_itself_and_its_equation() {
     let entry = FlightPath { speed: circular, ..FlightPath::from_planet_fixed(&case.initial_state) };
     let case = Case { initial_state: entry.to_planet_fixed(), ..case };
     for eta in [1e-2, 0.1, 0.5] {
-        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::MediumGlide, case, eta);
+        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::MediumGlide, case.clone(), eta);
         relative("d(γ²)/dη", 2.0 * gamma * gamma_slope, -0.5, 1e-6);
         relative("dV²/dη", speed_slope, 2.0 * speed_squared / gamma, 1e-6);
     }
@@ -244,7 +244,7 @@ fn medium_glide_is_consistent_with_itself_and_its_equation() {
 fn loh_starts_along_the_equation_of_the_angle() {
     let case = table(4, LISTING);
     let eta_e = 1.547_93 * (-60_003.0 * BETA).exp() * 20.0 / (2.0 * 99_000.0 * BETA);
-    let theory = theory(Solution::Loh, case);
+    let theory = theory(Solution::Loh, case.clone());
     let cosine = |eta: f64| theory.prediction(&at(&case, eta, 7571.7)).unwrap().flight_path_angle.unwrap().cos();
     let step = 1e-3 * eta_e;
     let slope = (cosine(eta_e + step) - cosine(eta_e - step)) / (2.0 * step);
@@ -274,7 +274,7 @@ fn loh_becomes_first_order_as_the_planet_grows() {
         };
         let case = Case { planet, initial_state: entry.to_planet_fixed(), ..table(4, LISTING) };
         let angle =
-            |solution| theory(solution, case).prediction(&at(&case, 0.2, speed)).unwrap().flight_path_angle.unwrap();
+            |solution| theory(solution, case.clone()).prediction(&at(&case, 0.2, speed)).unwrap().flight_path_angle.unwrap();
         angle(Solution::Loh) - angle(Solution::SteepGlide)
     };
     let [small, large] = [1.0, 1000.0].map(difference);
@@ -349,11 +349,11 @@ fn a_theory_that_never_holds_says_why() {
 fn what_no_number_holds_is_no_prediction() {
     // C_L/C_D beyond all numbers: no speed, and no angle to divide by it.
     let lift = Case { vehicle: vehicle(50.0, 0.01, 1e9, 1e-300), ..table(5, LISTING) };
-    let prediction = theory(Solution::ShallowGlide, lift).prediction(&at(&lift, 0.01, 5000.0));
+    let prediction = theory(Solution::ShallowGlide, lift.clone()).prediction(&at(&lift, 0.01, 5000.0));
     assert_eq!(prediction, Err(End::Overflow));
     // Loh's g₀r₀/V² at rest, at entry 1/0 times 0.
     let loh = table(4, LISTING);
-    let mut entry = fly(loh).initial();
+    let mut entry = fly(loh.clone()).initial();
     entry.flight_path.speed = 0.0;
     assert_eq!(theory(Solution::Loh, loh).prediction(&entry), Err(End::Overflow));
 }
@@ -385,21 +385,21 @@ fn theories_that_do_not_apply_are_refused_with_every_fault() {
     for solution in ALL {
         let ballistic = solution == Solution::SteepBallistic;
         let case = if ballistic { table(6, LISTING) } else { table(5, LISTING) };
-        refused(solution, in_vacuum(case), &[Fault::NoAir]);
+        refused(solution, in_vacuum(case.clone()), &[Fault::NoAir]);
         let lift = if ballistic { 0.0 } else { 0.2 };
-        refused(solution, with(case, vehicle(50.0, 0.0, lift, 0.1)), &[Fault::NoArea]);
-        refused(solution, with(case, vehicle(50.0, 0.1, lift, 0.0)), &[Fault::NoDrag]);
+        refused(solution, with(case.clone(), vehicle(50.0, 0.0, lift, 0.1)), &[Fault::NoArea]);
+        refused(solution, with(case.clone(), vehicle(50.0, 0.1, lift, 0.0)), &[Fault::NoDrag]);
         // e^(-h/H) is zero from 745 scale heights on.
         let high = Atmosphere::Exponential { surface_density: 1.0, scale_height: 100.0 };
-        refused(solution, Case { atmosphere: high, ..case }, &[Fault::NoAirAtEntry]);
+        refused(solution, Case { atmosphere: high, ..case.clone() }, &[Fault::NoAirAtEntry]);
         if ballistic {
-            let lifting = with(case, vehicle(50.0, 0.1, 0.2, 0.1));
-            refused(solution, lifting, &[Fault::Lift { lift_coefficient: 0.2 }]);
+            let lifting = with(case.clone(), vehicle(50.0, 0.1, 0.2, 0.1));
+            refused(solution, lifting.clone(), &[Fault::Lift { lift_coefficient: 0.2 }]);
             let error = Theory::new(solution, &Scenario::new(rising(lifting)).unwrap()).unwrap_err();
             assert!(matches!(error.0[..], [Fault::Lift { .. }, Fault::NoDescent { .. }]), "{error}");
         } else {
-            refused(solution, with(case, vehicle(50.0, 0.1, 0.0, 0.1)), &[Fault::NoLift]);
-            refused(solution, with(case, vehicle(50.0, 0.0, 0.0, 0.0)), &[Fault::NoLift, Fault::NoDrag, Fault::NoArea]);
+            refused(solution, with(case.clone(), vehicle(50.0, 0.1, 0.0, 0.1)), &[Fault::NoLift]);
+            refused(solution, with(case.clone(), vehicle(50.0, 0.0, 0.0, 0.0)), &[Fault::NoLift, Fault::NoDrag, Fault::NoArea]);
         }
         let descends = !matches!(solution, Solution::ShallowGlide | Solution::Loh);
         let climbs = Theory::new(solution, &Scenario::new(rising(case)).unwrap());
@@ -416,15 +416,17 @@ proptest! {
 
     #[test]
     fn a_theory_gives_numbers_within_its_stretch_and_none_outside(case in random_entry(), light in -6.0..0.0) {
-        let Vehicle { mass, reference_area, aerodynamics } = case.vehicle;
+        let Vehicle { mass, reference_area, ref aerodynamics } = case.vehicle;
         for solution in ALL {
-            let Aerodynamics::Constant { mut lift_coefficient, drag_coefficient } = aerodynamics;
+            let Aerodynamics::Constant { mut lift_coefficient, drag_coefficient } = *aerodynamics else {
+                panic!("{aerodynamics:?}")
+            };
             if solution == Solution::SteepBallistic {
                 lift_coefficient = 0.0;
             }
             let mass = mass * 10_f64.powf(light);
-            let case = Case { vehicle: vehicle(mass, reference_area, lift_coefficient, drag_coefficient), ..case };
-            let Ok(theory) = Theory::new(solution, &Scenario::new(case).unwrap()) else { continue };
+            let case = Case { vehicle: vehicle(mass, reference_area, lift_coefficient, drag_coefficient), ..case.clone() };
+            let Ok(theory) = Theory::new(solution, &Scenario::new(case.clone()).unwrap()) else { continue };
             let flight = fly(case);
             let points = flight.points(&flight.instants(&Sampling::PerStep(2), usize::MAX).unwrap());
             let Comparison { predictions, validity } = theory.compare(&flight, &points, &AtomicBool::new(false)).unwrap();
@@ -479,10 +481,10 @@ fn the_stretch_does_not_depend_on_the_rows() {
         (Solution::SteepGlide, pull_up(0.03, 0.05, -0.1)),
         (Solution::MediumGlide, pull_up(0.03, 0.05, -0.1)),
     ] {
-        let flight = fly(case);
+        let flight = fly(case.clone());
         let validity = |sampling: Sampling| {
             let instants = flight.instants(&sampling, usize::MAX).unwrap();
-            theory(solution, case)
+            theory(solution, case.clone())
                 .compare(&flight, &flight.points(&instants), &AtomicBool::new(false))
                 .unwrap()
                 .validity
@@ -503,6 +505,6 @@ fn the_stretch_does_not_depend_on_the_rows() {
 #[test]
 fn the_flag_ends_the_search_for_the_stretch() {
     let case = table(4, LISTING);
-    let interrupted = theory(Solution::Loh, case).compare(&fly(case), &[], &AtomicBool::new(true));
+    let interrupted = theory(Solution::Loh, case.clone()).compare(&fly(case), &[], &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));
 }

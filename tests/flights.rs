@@ -8,7 +8,8 @@ use proptest::test_runner::RngSeed;
 use reentry::scenario::Equations;
 use reentry::simulate::SimulationError;
 use reentry::{
-    Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop, Trajectory, Vehicle, simulate,
+    Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Trajectory, Vehicle, Wind,
+    simulate,
 };
 
 /// Jameson 2006, Table 2.
@@ -25,8 +26,10 @@ pub(crate) fn target_2() -> Case {
     Case {
         planet: Planet::EARTH_WGS84.spherical(),
         atmosphere: Atmosphere::EARTH_JAMESON,
+        density_factor: 1.0,
+        wind: Wind::Still,
         vehicle: vehicle(700.0, 0.216_419, 0.2, 0.2),
-        bank_angle: 0.8,
+        control: Control::banked(0.8),
         initial_state: initial_state.to_planet_fixed(),
         stop: Stop::default(),
         solver: Solver::default(),
@@ -53,12 +56,12 @@ pub(crate) fn spherical(case: Case) -> Case {
 /// Flies a sound case.
 #[track_caller]
 pub(crate) fn fly(case: Case) -> Trajectory {
-    try_to_fly(case).unwrap_or_else(|error| panic!("{error} in {case:?}"))
+    try_to_fly(case.clone()).unwrap_or_else(|error| panic!("{error} in {case:?}"))
 }
 
 #[track_caller]
 pub(crate) fn try_to_fly(case: Case) -> Result<Trajectory, SimulationError> {
-    let scenario = Scenario::new(case).unwrap_or_else(|error| panic!("{error} in {case:?}"));
+    let scenario = Scenario::new(case.clone()).unwrap_or_else(|error| panic!("{error} in {case:?}"));
     simulate(&scenario, &AtomicBool::new(false))
 }
 
@@ -80,7 +83,7 @@ pub(crate) fn random_entry() -> impl Strategy<Value = Case> {
         Case {
             planet: if round { Planet::EARTH_WGS84.spherical() } else { Planet::EARTH_WGS84 },
             vehicle: vehicle(mass, area, lift, drag),
-            bank_angle,
+            control: Control::banked(bank_angle),
             initial_state: state.to_planet_fixed(),
             stop: Stop { altitude: 0.0, time: 1000.0 },
             ..target_2()

@@ -14,7 +14,7 @@ use crate::flights::target_2;
 struct Kepler;
 
 impl<S: Scalar> System<S, 4> for Kepler {
-    fn derivative(&self, state: &[S; 4]) -> [S; 4] {
+    fn derivative(&self, _: S, state: &[S; 4]) -> [S; 4] {
         let [x, y, vx, vy] = *state;
         let squared = x * x + y * y;
         let pull = (squared * squared.sqrt()).recip();
@@ -47,8 +47,8 @@ fn limits(relative_tolerance: f64, interrupt: &AtomicBool) -> Limits<'_> {
 fn single_step(length: f64) -> Step<4> {
     let interrupt = AtomicBool::new(false);
     let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-10, &interrupt));
-    let step = integrator.advance(length).unwrap();
-    integrator.shorten(&step, length)
+    let step = integrator.advance(&Kepler, length).unwrap();
+    integrator.shorten(&Kepler, &step, length)
 }
 
 fn distance(state: &[f64; 4], time: f64) -> f64 {
@@ -99,7 +99,7 @@ fn the_global_error_follows_the_tolerance() {
         let mut last = PERIAPSIS;
         let mut time = 0.0;
         while time < 20.0 {
-            let step = integrator.advance(20.0).unwrap();
+            let step = integrator.advance(&Kepler, 20.0).unwrap();
             (time, last) = (step.end_time, step.end);
         }
         near("the end", time, 20.0, 0.0);
@@ -115,7 +115,7 @@ fn evaluations_are_counted() {
     use std::cell::Cell;
     struct Counting(Cell<usize>);
     impl<S: Scalar> System<S, 1> for Counting {
-        fn derivative(&self, state: &[S; 1]) -> [S; 1] {
+        fn derivative(&self, _: S, state: &[S; 1]) -> [S; 1] {
             self.0.set(self.0.get() + 1);
             [-state[0] * state[0]]
         }
@@ -129,11 +129,11 @@ fn evaluations_are_counted() {
     let system = Counting(Cell::new(0));
     let mut integrator = Integrator::new(&system, [1.0], limits(1e-12, &interrupt));
     for _ in 0..5 {
-        let step = integrator.advance(100.0).unwrap();
-        integrator.shorten(&step, step.time(0.5));
+        let step = integrator.advance(&system, 100.0).unwrap();
+        integrator.shorten(&system, &step, step.time(0.5));
     }
     assert_eq!(integrator.statistics().evaluations, system.0.get());
-    let step = integrator.advance(100.0).unwrap();
+    let step = integrator.advance(&system, 100.0).unwrap();
     let before = system.0.get();
     step.interpolant(&system);
     assert_eq!(system.0.get(), before + Interpolant::<1>::EVALUATIONS);
@@ -144,7 +144,7 @@ fn a_step_that_is_not_finite_is_rejected() {
     /// Falls to the edge of what it is defined on: y = (1 - t)², not a number beyond y = 0.
     struct Edge;
     impl<S: Scalar> System<S, 1> for Edge {
-        fn derivative(&self, state: &[S; 1]) -> [S; 1] {
+        fn derivative(&self, _: S, state: &[S; 1]) -> [S; 1] {
             [state[0].sqrt() * -2.0]
         }
     }
@@ -157,13 +157,13 @@ fn a_step_that_is_not_finite_is_rejected() {
     let mut integrator = Integrator::new(&Edge, [1.0], limits(1e-6, &interrupt));
     let mut time = 0.0;
     while time < 0.999 {
-        let step = integrator.advance(0.999).unwrap();
+        let step = integrator.advance(&Edge, 0.999).unwrap();
         time = step.end_time;
         near("y", step.end[0], (1.0 - time) * (1.0 - time), 1e-5);
     }
     // Beyond the edge there is nothing to step to.
     let error = loop {
-        match integrator.advance(2.0) {
+        match integrator.advance(&Edge, 2.0) {
             Ok(step) => assert!(step.end[0].is_finite() && step.end_time < 1.0 + 1e-3),
             Err(error) => break error,
         }
@@ -175,7 +175,7 @@ fn a_step_that_is_not_finite_is_rejected() {
 fn a_system_without_a_finite_slope_is_refused() {
     struct Nowhere;
     impl<S: Scalar> System<S, 1> for Nowhere {
-        fn derivative(&self, _: &[S; 1]) -> [S; 1] {
+        fn derivative(&self, _: S, _: &[S; 1]) -> [S; 1] {
             [S::from(f64::NAN)]
         }
     }
@@ -185,7 +185,7 @@ fn a_system_without_a_finite_slope_is_refused() {
         }
     }
     let interrupt = AtomicBool::new(false);
-    let error = Integrator::new(&Nowhere, [1.0], limits(1e-6, &interrupt)).advance(1.0).unwrap_err();
+    let error = Integrator::new(&Nowhere, [1.0], limits(1e-6, &interrupt)).advance(&Nowhere, 1.0).unwrap_err();
     assert_eq!(error, IntegrationError::StepTooSmall { time: 0.0 });
 }
 
@@ -193,24 +193,24 @@ fn a_system_without_a_finite_slope_is_refused() {
 fn the_flag_ends_the_integration_before_the_next_step() {
     let interrupt = AtomicBool::new(false);
     let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-6, &interrupt));
-    let step = integrator.advance(100.0).unwrap();
+    let step = integrator.advance(&Kepler, 100.0).unwrap();
     interrupt.store(true, std::sync::atomic::Ordering::Relaxed);
-    let error = integrator.advance(100.0).unwrap_err();
+    let error = integrator.advance(&Kepler, 100.0).unwrap_err();
     assert_eq!(error, IntegrationError::Interrupted { time: step.end_time });
 }
 
 /// The derivative in dual numbers: the same digits as in `f64`, and the slopes of central differences.
 fn duals_agree<F: System<f64, 6> + System<Dual64, 6>>(what: &str, motion: &F, state: [f64; 6]) {
-    let plain = motion.derivative(&state);
+    let plain = motion.derivative(0.0, &state);
     for component in 0..6 {
         let step = 1e-6 * state[component].abs().max(1.0);
         let seeded: [Dual64; 6] =
             std::array::from_fn(|i| Dual64::new(state[i], if i == component { 1.0 } else { 0.0 }));
-        let dual = motion.derivative(&seeded);
+        let dual = motion.derivative(0.0.into(), &seeded);
         let at = |offset: f64| {
             let mut moved = state;
             moved[component] += offset;
-            motion.derivative(&moved)
+            motion.derivative(0.0, &moved)
         };
         let (above, below) = (at(step), at(-step));
         for i in 0..6 {
@@ -245,13 +245,14 @@ fn steps_followed_in_dual_numbers_end_at_the_same_digits_and_with_the_right_slop
         let mut integrator = Integrator::new(&Kepler, [0.5, 0.0, 0.0, speed], limits(tolerance, &interrupt));
         let mut steps = Vec::new();
         while steps.last().is_none_or(|step: &Step<4>| step.end_time < 5.0) {
-            steps.push(integrator.advance(5.0).unwrap());
+            steps.push(integrator.advance(&Kepler, 5.0).unwrap());
         }
         steps
     };
     let steps = fly(PERIAPSIS[3], 1e-10);
     let [x, y, vx, vy] = PERIAPSIS;
-    let end = follow(&Kepler, [x.into(), y.into(), vx.into(), Dual64::new(vy, 1.0)], &steps, &interrupt).unwrap();
+    let start = [x.into(), y.into(), vx.into(), Dual64::new(vy, 1.0)];
+    let end = steps.iter().fold(start, |state, step| follow(&Kepler, &state, step));
     let last = |steps: Vec<Step<4>>| steps.last().unwrap().end;
     assert_eq!(end.map(|x| x.re.to_bits()), last(steps).map(f64::to_bits));
     let (above, below) = (last(fly(vy + 1e-5, 1e-13)), last(fly(vy - 1e-5, 1e-13)));

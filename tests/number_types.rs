@@ -9,7 +9,7 @@ use reentry::scalar::{Lanes, Scalar};
 use reentry::sensitivity::{self, Gradient, Sensitivities};
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::Termination;
-use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Scenario, Stop, Trajectory, simulate};
+use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Scenario, Stop, Trajectory, simulate};
 
 use crate::check::near;
 use crate::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
@@ -46,19 +46,19 @@ fn derivatives_agree<const L: usize>(case: &Case) {
     let states = members.map(|(_, state)| -> [f64; 6] { state.into() });
     let places = members.map(|(_, state)| -> [f64; 6] { state.to_planet_fixed().into() });
     let by_lane = |rows: &[[f64; 6]; L]| std::array::from_fn(|i| Lanes(rows.map(|row| row[i])));
-    let spherical = Spherical(abreast).derivative(&by_lane(&states));
-    let cartesian = Cartesian(abreast).derivative(&by_lane(&places));
+    let spherical = Spherical(abreast.clone()).derivative(Lanes::from(0.0), &by_lane(&states));
+    let cartesian = Cartesian(abreast).derivative(Lanes::from(0.0), &by_lane(&places));
     for lane in 0..L {
         let alone = Forces::new(case.models(), members[lane].0);
         let digits = |lanes: [Lanes<L>; 6]| lanes.map(|component| component.0[lane].to_bits());
         assert_eq!(
             digits(spherical),
-            Spherical(alone).derivative(&states[lane]).map(f64::to_bits),
+            Spherical(alone.clone()).derivative(0.0, &states[lane]).map(f64::to_bits),
             "lane {lane} of {L}"
         );
         assert_eq!(
             digits(cartesian),
-            Cartesian(alone).derivative(&places[lane]).map(f64::to_bits),
+            Cartesian(alone).derivative(0.0, &places[lane]).map(f64::to_bits),
             "lane {lane} of {L}"
         );
     }
@@ -105,7 +105,7 @@ proptest! {
 
     #[test]
     fn an_arrival_is_the_end_of_the_flight(case in random_entry()) {
-        let flight = fly(case);
+        let flight = fly(case.clone());
         let end = arrival(&Scenario::new(case).unwrap(), &AtomicBool::new(false)).unwrap();
         prop_assert_eq!(end.time.to_bits(), flight.end_time().to_bits());
         prop_assert_eq!(FlightPath::from_planet_fixed(&end.state).wrapped(), flight.last().flight_path);
@@ -130,7 +130,7 @@ fn flying_allocates_nothing_and_recording_little() {
 fn flights_in_lanes_end_where_they_start_when_they_must_and_when_the_flag_is_raised() {
     let ground = FlightPath { radius: 6_378_137.0, ..FlightPath::from_planet_fixed(&target_2().initial_state) };
     let grounded = Case { initial_state: ground.to_planet_fixed(), ..target_2() };
-    let scenarios: Vec<_> = [grounded, target_2(), grounded].map(|case| Scenario::new(case).unwrap()).into();
+    let scenarios: Vec<_> = [grounded.clone(), target_2(), grounded].map(|case| Scenario::new(case).unwrap()).into();
     let ends = arrivals::<4>(&scenarios, &AtomicBool::new(false));
     let times: Vec<_> = ends.iter().map(|end| end.unwrap().time).collect();
     assert_eq!([times[0], times[2]].map(f64::to_bits), [0; 2]);
@@ -151,11 +151,13 @@ fn outputs(case: Case) -> [f64; 5] {
 }
 
 /// The case with one of the twelve numbers changed by an amount.
-fn varied(case: Case, input: usize, amount: f64) -> Case {
-    let mut vehicle = case.vehicle;
-    let Aerodynamics::Constant { mut lift_coefficient, mut drag_coefficient } = vehicle.aerodynamics;
-    let Atmosphere::Exponential { mut surface_density, scale_height } = case.atmosphere;
-    let mut bank_angle = case.bank_angle;
+fn varied(case: &Case, input: usize, amount: f64) -> Case {
+    let mut vehicle = case.vehicle.clone();
+    let Aerodynamics::Constant { mut lift_coefficient, mut drag_coefficient } = vehicle.aerodynamics else {
+        panic!("{vehicle:?}")
+    };
+    let Atmosphere::Exponential { mut surface_density, scale_height } = case.atmosphere else { panic!("{case:?}") };
+    let mut bank_angle = case.parameters().bank_angle;
     let mut state: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
     *match input {
         0 => &mut vehicle.mass,
@@ -169,7 +171,7 @@ fn varied(case: Case, input: usize, amount: f64) -> Case {
     vehicle.aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient };
     let atmosphere = Atmosphere::Exponential { surface_density, scale_height };
     let initial_state = FlightPath::from(state).to_planet_fixed();
-    Case { vehicle, atmosphere, bank_angle, initial_state, ..case }
+    Case { vehicle, atmosphere, control: Control::banked(bank_angle), initial_state, ..case.clone() }
 }
 
 fn rows(sensitivities: &Sensitivities) -> [[f64; 12]; 5] {
@@ -185,8 +187,8 @@ fn rows(sensitivities: &Sensitivities) -> [[f64; 12]; 5] {
 }
 
 /// Central differences of flights at 1e-13, whose error is that of their second order and some rounding.
-fn agrees_with_differences(what: &str, case: Case) {
-    let slopes = rows(&sensitivities(&fly(case)));
+fn agrees_with_differences(what: &str, case: &Case) {
+    let slopes = rows(&sensitivities(&fly(case.clone())));
     // Steps that move the impact by metres.
     let steps = [
         1e-5 * case.vehicle.mass,
@@ -217,15 +219,15 @@ fn agrees_with_differences(what: &str, case: Case) {
 #[test]
 fn sensitivities_are_the_slopes_of_the_impact() {
     let ellipsoid = Case { planet: reentry::Planet::EARTH_WGS84, ..target_2() };
-    agrees_with_differences("TARGET case 2", target_2());
-    agrees_with_differences("over the ellipsoid", ellipsoid);
-    agrees_with_differences("spherical", spherical(ellipsoid));
-    let timed = Case { stop: Stop { time: 70.0, ..Stop::default() }, ..ellipsoid };
-    agrees_with_differences("to a given time", timed);
-    assert!(rows(&sensitivities(&fly(timed)))[0].iter().all(|slope| *slope == 0.0), "the time is given");
+    agrees_with_differences("TARGET case 2", &target_2());
+    agrees_with_differences("over the ellipsoid", &ellipsoid);
+    agrees_with_differences("spherical", &spherical(ellipsoid.clone()));
+    let timed = Case { stop: Stop { time: 70.0, ..Stop::default() }, ..ellipsoid.clone() };
+    agrees_with_differences("to a given time", &timed);
+    assert!(rows(&sensitivities(&fly(timed.clone())))[0].iter().all(|slope| *slope == 0.0), "the time is given");
     // Slopes by coefficients and densities of zero are those on the one side that there is: the other quantities are enough.
-    let ballistic = Case { vehicle: vehicle(700.0, 0.216_419, 0.0, 0.2), ..ellipsoid };
-    agrees_with_differences("without lift", ballistic);
+    let ballistic = Case { vehicle: vehicle(700.0, 0.216_419, 0.0, 0.2), ..ellipsoid.clone() };
+    agrees_with_differences("without lift", &ballistic);
 }
 
 /// In a vacuum straight up and down: t = 2v/g and the rest by hand, and the slope by a density that is zero.
@@ -235,7 +237,7 @@ fn sensitivities_of_a_stone_thrown_upward_are_those_of_the_textbook() {
     let (radius, speed) = (6_378_137.0, 100.0);
     let up =
         FlightPath { radius, longitude: 0.3, geocentric_latitude: 0.2, speed, flight_path_angle: 1.2, heading: 0.4 };
-    let stone = Case { planet, initial_state: up.to_planet_fixed(), bank_angle: 0.0, ..in_vacuum(target_2()) };
+    let stone = Case { planet, initial_state: up.to_planet_fixed(), control: Control::banked(0.0), ..in_vacuum(target_2()) };
     let stone = Case { vehicle: vehicle(1.0, 0.01, 0.0, 1.0), ..stone };
     let flight = fly(stone);
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
@@ -282,7 +284,7 @@ fn what_is_undefined_has_no_slope() {
             flight_path_angle,
             heading: 0.0,
         };
-        let case = Case { planet, initial_state: start.to_planet_fixed(), bank_angle: 0.0, ..target_2() };
+        let case = Case { planet, initial_state: start.to_planet_fixed(), control: Control::banked(0.0), ..target_2() };
         sensitivities(&fly(Case { vehicle: vehicle(10.0, 0.01, 0.0, 1.0), ..case }))
     };
     let finite = |gradient: &Gradient| gradient.mass.is_finite();

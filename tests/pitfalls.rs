@@ -7,7 +7,7 @@ use reentry::motion::Singularity;
 use reentry::scenario::Fault;
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{Sampling, Termination, Warning};
-use reentry::{Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop, simulate};
+use reentry::{Control, Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop, simulate};
 
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
@@ -51,12 +51,12 @@ fn the_impact_lies_on_the_ground_at_every_tolerance() {
 fn the_state_at_the_impact_is_more_accurate_than_the_dense_output() {
     // The same flight into a pit passes the ground inside a step.
     let pit = Case { stop: Stop { altitude: -3000.0, time: 1e4 }, ..target_2() };
-    let exact = fly(with_tolerance(pit, 1e-14));
+    let exact = fly(with_tolerance(pit.clone(), 1e-14));
     let place = |point: reentry::trajectory::FlightPoint| point.flight_path.to_planet_fixed().position;
     let [mut on_dense, mut on_step] = [0.0; 2];
     for tolerance in [1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9] {
         let impact = fly(with_tolerance(target_2(), tolerance));
-        let passing = fly(with_tolerance(pit, tolerance));
+        let passing = fly(with_tolerance(pit.clone(), tolerance));
         let time = impact.end_time();
         on_step += ((place(impact.last()) - place(exact.at(time))).norm() / tolerance).ln();
         on_dense += ((place(passing.at(time)) - place(exact.at(time))).norm() / tolerance).ln();
@@ -69,10 +69,10 @@ fn the_state_at_the_impact_is_more_accurate_than_the_dense_output() {
 #[test]
 fn the_density_is_finite_at_every_altitude() {
     for altitude in [0.0, -1e5, -5e6, -1e9, -1e300, 1e300] {
-        let density: f64 = Atmosphere::EARTH_JAMESON.density(altitude);
+        let density: f64 = Atmosphere::EARTH_JAMESON.density(0, altitude);
         assert!(density.is_finite(), "{density} at {altitude}");
         // Of the least scale height there is, whose reciprocal no number holds.
-        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(altitude);
+        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(0, altitude);
         assert!(thin.is_finite(), "{thin} at {altitude}");
     }
     // A heavy body at great speed straight down: its first trial steps end far below the ground.
@@ -80,7 +80,7 @@ fn the_density_is_finite_at_every_altitude() {
         Case { vehicle: vehicle(1e6, 0.01, 0.0, 0.1), ..target_2() },
         FlightPath { speed: 1e6, flight_path_angle: -1.5, ..FlightPath::from_planet_fixed(&target_2().initial_state) },
     );
-    let exact = fly(with_tolerance(dart, 1e-13));
+    let exact = fly(with_tolerance(dart.clone(), 1e-13));
     let flight = fly(with_tolerance(dart, 1e-3));
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
     // A thousandth of the circular speed over the 0.12 s of this flight.
@@ -103,12 +103,12 @@ fn the_atmosphere_is_not_jumped_over() {
             FlightPath { radius, longitude: 0.0, geocentric_latitude: 0.0, speed, flight_path_angle, heading: 0.3 };
         let case = starting(Case { planet, vehicle: vehicle(5000.0, 10.0, 0.0, 1.0), ..target_2() }, state);
         let case = Case { stop: Stop { altitude: 0.0, time: 60_000.0 }, ..case };
-        let exact = fly(with_tolerance(case, 1e-13));
-        let coasting = fly(with_tolerance(in_vacuum(case), 1e-13));
+        let exact = fly(with_tolerance(case.clone(), 1e-13));
+        let coasting = fly(with_tolerance(in_vacuum(case.clone()), 1e-13));
         let lost = coasting.last().flight_path.speed - exact.last().flight_path.speed;
         assert!(lost > speed_lost, "{perigee}: the air takes {lost} m/s");
         for tolerance in [1e-3, 1e-4, 1e-6, 1e-8] {
-            let flight = fly(with_tolerance(case, tolerance));
+            let flight = fly(with_tolerance(case.clone(), tolerance));
             let error = (flight.peaks().deceleration.value / exact.peaks().deceleration.value - 1.0).abs();
             assert!(error < 0.1, "{perigee}, {tolerance:e}: peak deceleration off by {error}");
         }
@@ -120,7 +120,7 @@ fn the_atmosphere_is_not_jumped_over() {
 #[test]
 fn negative_lift_ends_in_the_vertical_and_not_in_chatter() {
     let state = FlightPath { flight_path_angle: -1.2, ..FlightPath::from_planet_fixed(&target_2().initial_state) };
-    let diving = starting(Case { vehicle: vehicle(700.0, 0.216_419, -0.5, 0.2), bank_angle: 0.0, ..target_2() }, state);
+    let diving = starting(Case { vehicle: vehicle(700.0, 0.216_419, -0.5, 0.2), control: Control::banked(0.0), ..target_2() }, state);
     let flight = fly(diving);
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
     assert!(flight.statistics().steps < 500, "{:?}", flight.statistics());
@@ -178,7 +178,7 @@ fn the_spherical_formulation_never_hangs_or_errs_near_its_singularities() {
         for state in [over_the_pole, through_the_top] {
             let ballistic = Case { planet, vehicle: vehicle(700.0, 0.216_419, 0.0, 0.2), ..target_2() };
             let case = starting(ballistic, state);
-            match try_to_fly(spherical(case)) {
+            match try_to_fly(spherical(case.clone())) {
                 Ok(flight) => {
                     let error = miss(&flight, &fly(case));
                     assert!(error < 1.0, "{miss_by:e}, {state:?}: {error} m");
@@ -201,7 +201,7 @@ fn a_flight_that_never_lands_ends_with_its_time() {
         ..FlightPath::from_planet_fixed(&target_2().initial_state)
     };
     let case = starting(in_vacuum(target_2()), orbit);
-    let flight = fly(Case { stop: Stop { altitude: 0.0, time: 20_000.0 }, ..case });
+    let flight = fly(Case { stop: Stop { altitude: 0.0, time: 20_000.0 }, ..case.clone() });
     assert_eq!(flight.termination(), Termination::TimeLimit);
     near("the end", flight.end_time(), 20_000.0, 0.0);
 
@@ -260,17 +260,17 @@ fn a_start_on_the_ground_flies_only_upward() {
             flight_path_angle,
             ..on_ground
         };
-        let hop = fly(starting(ballistic, at(0.5, 300.0)));
+        let hop = fly(starting(ballistic.clone(), at(0.5, 300.0)));
         assert!(hop.end_time() > 10.0, "{above}: {}", hop.end_time());
         near("back on the ground", hop.last().loads.altitude, 0.0, 1e-8);
         for landed in [at(-0.5, 300.0), at(0.0, 300.0), at(0.0, 0.0)] {
-            let flight = fly(starting(ballistic, landed));
+            let flight = fly(starting(ballistic.clone(), landed));
             assert_eq!(flight.termination(), Termination::SurfaceImpact);
             near("at once", flight.end_time(), 0.0, 0.0);
         }
         // Level, but faster than a satellite: the ground falls away.
         let off =
-            fly(Case { stop: Stop { altitude: 0.0, time: 5.0 }, ..in_vacuum(starting(ballistic, at(0.0, 9000.0))) });
+            fly(Case { stop: Stop { altitude: 0.0, time: 5.0 }, ..in_vacuum(starting(ballistic.clone(), at(0.0, 9000.0))) });
         assert_eq!(off.termination(), Termination::TimeLimit, "{above}");
     }
     let below = FlightPath { radius: 6_378_136.99, ..on_ground };

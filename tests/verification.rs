@@ -11,16 +11,16 @@ use crate::check::{near, relative};
 use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
 
 fn verified(case: Case) -> Verification {
-    verify(&Scenario::new(case).unwrap(), &fly(case), &AtomicBool::new(false)).unwrap()
+    verify(&Scenario::new(case.clone()).unwrap(), &fly(case), &AtomicBool::new(false)).unwrap()
 }
 
 #[test]
 fn the_distance_from_the_finer_flight_is_the_error() {
     for case in [target_2(), spherical(target_2())] {
-        let exact = fly(with_tolerance(case, 1e-14));
+        let exact = fly(with_tolerance(case.clone(), 1e-14));
         for tolerance in [1e-5, 1e-7, 1e-9] {
-            let case = with_tolerance(case, tolerance);
-            let (flight, verification) = (fly(case), verified(case));
+            let case = with_tolerance(case.clone(), tolerance);
+            let (flight, verification) = (fly(case.clone()), verified(case));
             relative("the tolerance of the finer flight", verification.relative_tolerance, tolerance / 100.0, 1e-15);
             // The finer flight has some hundredths of the error.
             relative("distance", verification.distance, miss(&flight, &exact), 0.2);
@@ -54,8 +54,8 @@ proptest! {
 
     #[test]
     fn energy_is_balanced_on_every_flight(case in random_entry()) {
-        for case in [case, in_vacuum(case), spherical(case)] {
-            let verification = match verify(&Scenario::new(case).unwrap(), &fly(case), &AtomicBool::new(false)) {
+        for case in [case.clone(), in_vacuum(case.clone()), spherical(case)] {
+            let verification = match verify(&Scenario::new(case.clone()).unwrap(), &fly(case), &AtomicBool::new(false)) {
                 Err(SimulationError::Singularity { .. }) => continue,
                 verification => verification.unwrap(),
             };
@@ -85,8 +85,8 @@ fn the_finer_flight_may_take_more_steps() {
         heading: 0.5,
     };
     let case = Case { initial_state: orbit.to_planet_fixed(), stop: Stop { altitude: 0.0, time: 2e5 }, ..target_2() };
-    let steps = fly(case).statistics().steps;
+    let steps = fly(case.clone()).statistics().steps;
     let case = Case { solver: Solver { step_limit: steps + 100, ..case.solver }, ..case };
-    assert!(fly(with_tolerance(case, 1e-10)).statistics().steps <= steps);
+    assert!(fly(with_tolerance(case.clone(), 1e-10)).statistics().steps <= steps);
     assert!(verified(case).distance > 0.0);
 }
