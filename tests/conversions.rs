@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use reentry::Planet;
 use reentry::coordinates::{
-    FlightPath, Geodetic, Inertial, NoElements, OrbitShape, OrbitalElements, PlanetFixed, earth_rotation_angle,
-    latitude_and_altitude,
+    FlightPath, Geodetic, Inertial, InertialFlightPath, NoElements, OrbitShape, OrbitalElements, PlanetFixed,
+    earth_rotation_angle, latitude_and_altitude,
 };
 use reentry::planet::Shape;
 use reentry_tests::cases::read_csv;
@@ -210,6 +210,18 @@ fn flight_path() -> impl Strategy<Value = FlightPath<f64>> {
     })
 }
 
+/// The same numbers, of the inertial velocity.
+fn inertially(state: FlightPath<f64>) -> InertialFlightPath {
+    InertialFlightPath {
+        radius: state.radius,
+        longitude: state.longitude,
+        geocentric_latitude: state.geocentric_latitude,
+        inertial_speed: state.speed,
+        inertial_flight_path_angle: state.flight_path_angle,
+        inertial_heading: state.heading,
+    }
+}
+
 #[track_caller]
 fn same_state(what: &str, actual: &PlanetFixed<f64>, expected: &PlanetFixed<f64>, tolerance: f64) {
     near(what, (actual.position - expected.position).norm(), 0.0, tolerance * expected.position.norm());
@@ -284,6 +296,55 @@ proptest! {
     }
 
     #[test]
+    fn inertial_flight_path_there_and_back(state in flight_path()) {
+        let fixed = inertially(state).to_planet_fixed(&WGS84);
+        let back = InertialFlightPath::from_planet_fixed(&fixed, &WGS84);
+        let again = back.to_planet_fixed(&WGS84);
+        near("position", (again.position - fixed.position).norm(), 0.0, 1e-14 * fixed.position.norm());
+        // Twice a sum of the velocity and that of the turning frame, in whose roundings a small one is lost.
+        let rotation = WGS84.rotation_rate * state.radius;
+        let rounding = 1e-14 * (state.speed + rotation);
+        near("velocity", (again.velocity - fixed.velocity).norm(), 0.0, rounding);
+        prop_assert!(-PI < back.longitude && back.longitude <= PI);
+        prop_assert!(-PI < back.inertial_heading && back.inertial_heading <= PI);
+        near("speed", back.inertial_speed, state.speed, rounding);
+        // The angles are as good as the part of the velocity that they turn, and those of the place away from the poles.
+        if state.geocentric_latitude.cos() > 0.01 && state.flight_path_angle.cos() > 0.01 && state.speed > 0.0 {
+            let turned = 1e-12 + 100.0 * rounding / state.speed;
+            angle("longitude", back.longitude, state.longitude, 1e-13);
+            angle("latitude", back.geocentric_latitude, state.geocentric_latitude, 1e-13);
+            angle("flight-path angle", back.inertial_flight_path_angle, state.flight_path_angle, turned.min(TAU));
+            angle("heading", back.inertial_heading, state.heading, turned.min(TAU));
+        }
+    }
+
+    /// The same components by the horizon of the inertial frame, where the place has the longitude θ + ωΔt.
+    #[test]
+    fn inertial_flight_path_is_that_of_the_inertial_vectors(state in flight_path(), sidereal_time in -1e5..1e5) {
+        let turn = WGS84.rotation_rate * sidereal_time;
+        let PlanetFixed { position, velocity } =
+            FlightPath { longitude: state.longitude + turn, ..state }.to_planet_fixed();
+        let by_vectors = Inertial { position, velocity }.to_planet_fixed(&WGS84, sidereal_time);
+        let fixed = inertially(state).to_planet_fixed(&WGS84);
+        near("position", (fixed.position - by_vectors.position).norm(), 0.0, 1e-14 * state.radius);
+        let rounding = 1e-14 * (state.speed + WGS84.rotation_rate * state.radius);
+        near("velocity", (fixed.velocity - by_vectors.velocity).norm(), 0.0, rounding);
+        // There and back by way of the vectors: the speed is the length of the inertial velocity.
+        let back = InertialFlightPath::from_planet_fixed(&by_vectors, &WGS84);
+        near("speed", back.inertial_speed, velocity.norm(), rounding);
+    }
+
+    #[test]
+    fn inertial_flight_path_is_the_flight_path_where_the_planet_does_not_rotate(state in flight_path()) {
+        let at_rest = Planet { rotation_rate: 0.0, ..WGS84 };
+        let fixed = inertially(state).to_planet_fixed(&at_rest);
+        prop_assert_eq!(fixed, state.to_planet_fixed());
+        let expected = FlightPath::from_planet_fixed(&fixed).wrapped();
+        let back = InertialFlightPath::from_planet_fixed(&fixed, &at_rest);
+        prop_assert_eq!(back, inertially(expected));
+    }
+
+    #[test]
     fn elements_there_and_back(
         size in 6.6e6..1e8,
         eccentricity in prop_oneof![0.0..3.0, Just(0.0), Just(1.0), 0.999..1.001, 0.0..1e-9],
@@ -316,6 +377,80 @@ fn the_angles_of_a_zero_velocity_are_zero_whatever_the_signs_of_its_zeros() {
         let state = PlanetFixed { position, velocity: Vector3::new(zero, -zero, zero) };
         let state = FlightPath::from_planet_fixed(&state);
         assert_eq!([state.speed, state.flight_path_angle, state.heading].map(f64::abs).map(f64::to_bits), [0; 3]);
+    }
+}
+
+/// By the triangle of velocities, with the motion of the planet ωr cos φ to the east.
+#[test]
+fn the_planets_motion_is_taken_from_the_inertial_velocity() {
+    let eastward = |latitude: f64| WGS84.rotation_rate * 6.5e6 * latitude.cos();
+    for (latitude, speed, gamma, heading) in
+        [(0.0, 7800.0, 0.0, 0.0), (0.0, 11_000.0, -0.113, 0.7), (-0.5, 7800.0, -0.02, 2.5), (1.2, 300.0, 0.5, -1.5)]
+    {
+        let state = FlightPath {
+            radius: 6.5e6,
+            longitude: 3.0,
+            geocentric_latitude: latitude,
+            speed,
+            flight_path_angle: gamma,
+            heading,
+        };
+        let relative = FlightPath::from_planet_fixed(&inertially(state).to_planet_fixed(&WGS84));
+        let (up, level) = (speed * gamma.sin(), speed * gamma.cos());
+        let [east, north] = [level * heading.cos() - eastward(latitude), level * heading.sin()];
+        // Some roundings of velocities of 1e4 m/s.
+        near("speed", relative.speed, (up * up + east * east + north * north).sqrt(), 1e-11);
+        angle("flight-path angle", relative.flight_path_angle, up.atan2(east.hypot(north)), 1e-13);
+        angle("heading", relative.heading, north.atan2(east), 1e-13);
+    }
+}
+
+#[test]
+fn inertial_angles_at_rest_on_the_planet_at_the_poles_and_straight_up() {
+    // At rest on the planet it moves due east with it.
+    for latitude in [0.0, 0.7, -1.3] {
+        let at_rest = FlightPath {
+            radius: 6.4e6,
+            longitude: -2.0,
+            geocentric_latitude: latitude,
+            speed: 0.0,
+            flight_path_angle: 0.0,
+            heading: 0.0,
+        };
+        let state = InertialFlightPath::from_planet_fixed(&at_rest.to_planet_fixed(), &WGS84);
+        // Some roundings of the horizon and of the product.
+        relative("speed at rest", state.inertial_speed, WGS84.rotation_rate * 6.4e6 * latitude.cos(), 1e-14);
+        near("angle at rest", state.inertial_flight_path_angle, 0.0, 1e-15);
+        angle("heading at rest", state.inertial_heading, 0.0, 1e-15);
+    }
+    // The poles themselves stand still: inertial and relative velocity are one, at rest as well.
+    for pole in [6.5e6, -6.5e6] {
+        for velocity in [Vector3::new(3e3, -4e3, 100.0), Vector3::new(0.0, 0.0, -100.0), Vector3::zeros()] {
+            let fixed = PlanetFixed { position: Vector3::new(0.0, 0.0, pole), velocity };
+            let state = InertialFlightPath::from_planet_fixed(&fixed, &WGS84);
+            assert_eq!(state, inertially(FlightPath::from_planet_fixed(&fixed).wrapped()));
+            // The cosine of π/2 as a number is 6e-17: the place comes back 4e-10 m from the axis, with the motion there.
+            let back = state.to_planet_fixed(&WGS84);
+            near("position at a pole", (back.position - fixed.position).norm(), 0.0, 1e-9);
+            near("velocity at a pole", (back.velocity - fixed.velocity).norm(), 0.0, 1e-12);
+        }
+    }
+    // Inertially straight up or down, or at rest: to the west as the planet sees it.
+    for (speed, gamma) in [(1000.0, FRAC_PI_2), (1000.0, -FRAC_PI_2), (0.0, 0.3)] {
+        let vertical = InertialFlightPath {
+            radius: 7e6,
+            longitude: 0.0,
+            geocentric_latitude: 0.0,
+            inertial_speed: speed,
+            inertial_flight_path_angle: gamma,
+            inertial_heading: 2.0,
+        };
+        let fixed = vertical.to_planet_fixed(&WGS84);
+        let expected = Vector3::new(speed * gamma.sin(), -WGS84.rotation_rate * 7e6, 0.0);
+        near("vertical", (fixed.velocity - expected).norm(), 0.0, 1e-12);
+        let back = InertialFlightPath::from_planet_fixed(&fixed, &WGS84);
+        near("speed of the vertical", back.inertial_speed, speed, 1e-12);
+        near("climb of the vertical", back.inertial_speed * back.inertial_flight_path_angle.sin(), expected.x, 1e-12);
     }
 }
 

@@ -16,6 +16,7 @@ mod ranges;
 mod analytic;
 mod batch;
 mod convert;
+mod nesc;
 mod output;
 mod sidereal_time;
 mod simulate;

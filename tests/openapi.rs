@@ -13,7 +13,7 @@ use reentry_tests::service::Service;
 use serde_json::{Value, json};
 
 use crate::http::fields::{Kind, Need, fields};
-use crate::http::requests::{KINDS, conversion, flight, with, with_all, without};
+use crate::http::requests::{ALTERNATIVES, KINDS, conversion, flight, with, with_all, without};
 
 /// A validator of one of the document's schemas; OpenAPI 3.1 speaks JSON Schema 2020-12.
 fn schema(name: &str) -> Validator {
@@ -205,13 +205,11 @@ async fn schema_and_service_ask_for_exactly_one_alternative() {
     for (path, request, place) in
         [("/simulate", flight as fn(&str) -> Value, "/initial_state"), ("/convert", conversion, "/state")]
     {
-        for (kind, one, other) in
-            [("planet_relative", "altitude", "radius"), ("orbital_elements", "semi_major_axis", "semi_latus_rectum")]
-        {
+        for (kind, one, other, value) in ALTERNATIVES {
             let request = request(kind);
             let none = without(&request, &format!("{place}/{one}"));
             agreement.refused(path, &none, &format!("{kind} without {one}")).await;
-            let both = with(&request, &format!("{place}/{other}"), 7e6);
+            let both = with(&request, &format!("{place}/{other}"), value);
             agreement.refused(path, &both, &format!("{kind} with {one} and {other}")).await;
         }
         let numbers = with_all(&request("ecef"), [("/planet/model", json!("earth_wgs84"))]);
@@ -219,7 +217,7 @@ async fn schema_and_service_ask_for_exactly_one_alternative() {
         let unnamed = without(&request("ecef"), "/planet/model");
         agreement.refused(path, &unnamed, "numbers of a planet without custom").await;
     }
-    agreement.holds(12);
+    agreement.holds(20);
 }
 
 #[tokio::test]

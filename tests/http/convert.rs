@@ -66,6 +66,26 @@ fn states() -> Vec<(&'static str, Value)> {
             "geodetic_latitude": 0.6, "speed": 900, "flight_path_angle": 0.3, "azimuth": -1e-18}),
         ),
         (
+            "entry interface",
+            json!({"type": "inertial_flight_path", "altitude": 121_920, "longitude": -3.0, "geocentric_latitude": -0.06,
+            "inertial_speed": 11_032, "inertial_flight_path_angle": -0.1131, "inertial_azimuth": 0.876, "sidereal_time": 55}),
+        ),
+        (
+            "inertially due west on the date line",
+            json!({"type": "inertial_flight_path", "radius": 6.5e6, "longitude": -PI, "geocentric_latitude": 0.2,
+            "inertial_speed": 7e3, "inertial_flight_path_angle": 0, "inertial_heading": -PI}),
+        ),
+        (
+            "inertially straight down",
+            json!({"type": "inertial_flight_path", "radius": 6.5e6, "longitude": 6.2, "geocentric_latitude": 0.2,
+            "inertial_speed": 7e3, "inertial_flight_path_angle": -FRAC_PI_2, "inertial_heading": 0.3}),
+        ),
+        (
+            "inertially still",
+            json!({"type": "inertial_flight_path", "altitude": 1e6, "longitude": 1, "geocentric_latitude": 0.2,
+            "inertial_speed": 0, "inertial_flight_path_angle": 0.1, "inertial_azimuth": -6.2}),
+        ),
+        (
             "heading past a half turn",
             json!({"type": "planet_relative", "radius": 6.5e6, "longitude": 6.2,
             "geocentric_latitude": 0.6, "speed": 900, "flight_path_angle": -1.5, "heading": 3.5}),
@@ -133,6 +153,9 @@ fn to_degrees(state: &mut Value) {
         "flight_path_angle",
         "heading",
         "azimuth",
+        "inertial_flight_path_angle",
+        "inertial_heading",
+        "inertial_azimuth",
         "inclination",
         "raan",
         "argument_of_periapsis",
@@ -160,12 +183,20 @@ async fn answered_angles_lie_in_their_ranges() {
                 "/orbital_elements/true_anomaly",
                 "/geodetic/azimuth",
             ];
-            let half_turns = ["/planet_relative/longitude", "/planet_relative/heading", "/geodetic/longitude"];
+            let half_turns = [
+                "/planet_relative/longitude",
+                "/planet_relative/heading",
+                "/geodetic/longitude",
+                "/inertial_flight_path/longitude",
+                "/inertial_flight_path/inertial_heading",
+            ];
             let quarter_turns = [
                 "/planet_relative/geocentric_latitude",
                 "/planet_relative/flight_path_angle",
                 "/geodetic/geodetic_latitude",
                 "/geodetic/flight_path_angle",
+                "/inertial_flight_path/geocentric_latitude",
+                "/inertial_flight_path/inertial_flight_path_angle",
             ];
             let is_sound = |pointer: &str, angle: f64| {
                 if full_turn.contains(&pointer) {
@@ -203,6 +234,59 @@ async fn a_state_at_rest_has_angles_of_zero() {
             "/geodetic/azimuth",
         ] {
             assert_eq!(answer.pointer(pointer), Some(&json!(0.0)), "{name} {pointer}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_inertial_flight_path_is_written_by_the_inertial_velocity() {
+    let service = Service::new();
+    for (name, state) in states() {
+        let answer = good_answer(&service, "/convert", &json!({"state": state})).await;
+        let path = &answer["inertial_flight_path"];
+        let names: Vec<_> = path.as_object().unwrap().keys().map(String::as_str).collect();
+        let all = [
+            "type",
+            "radius",
+            "longitude",
+            "geocentric_latitude",
+            "inertial_speed",
+            "inertial_flight_path_angle",
+            "inertial_heading",
+            "sidereal_time",
+        ];
+        assert_eq!(names, all, "{name}");
+        for shared in ["radius", "longitude", "geocentric_latitude"] {
+            assert_eq!(path[shared], answer["planet_relative"][shared], "{name} {shared}");
+        }
+        // The same length and the same climb as the vectors, to the roundings of the turn between the frames and of a dot product.
+        let vector = |name: &str| [0, 1, 2].map(|i| answer["eci"][name][i].as_f64().unwrap());
+        let (position, velocity) = (vector("position"), vector("velocity"));
+        let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let field = |name: &str| path[name].as_f64().unwrap();
+        let [speed, radius] = [dot(velocity, velocity).sqrt(), dot(position, position).sqrt()];
+        let tolerance = 1e-14 * (speed + 7.3e-5 * radius);
+        check::near(name, field("inertial_speed"), speed, tolerance);
+        let climb = field("inertial_speed") * field("inertial_flight_path_angle").sin();
+        check::near(name, climb, dot(position, velocity) / radius, tolerance);
+    }
+}
+
+#[tokio::test]
+async fn azimuth_and_heading_of_an_inertial_flight_path_add_up_to_a_quarter_turn() {
+    let service = Service::new();
+    for (unit, quarter) in [("rad", FRAC_PI_2), ("deg", 90.0)] {
+        for turns in [-4.0, -1.7, -1.0, -0.2, 0.0, 0.5, 1.0, 2.0, 3.3, 4.0] {
+            let (azimuth, heading) = (turns * quarter, (1.0 - turns) * quarter);
+            let path = |name: &str, angle: f64| {
+                json!({"angle_unit": unit, "state": {"type": "inertial_flight_path", "radius": 6.5e6, "longitude": 1,
+                    "geocentric_latitude": 0.5, "inertial_speed": 7e3, "inertial_flight_path_angle": -0.1, name: angle}})
+            };
+            let by_azimuth = good_answer(&service, "/convert", &path("inertial_azimuth", azimuth)).await;
+            let heading = if heading > 4.0 * quarter { heading - 4.0 * quarter } else { heading };
+            let by_heading = good_answer(&service, "/convert", &path("inertial_heading", heading)).await;
+            // Some roundings of angles up to a turn.
+            assert!(distance(&by_azimuth["ecef"], &by_heading["ecef"]) < 1e-14, "{turns} quarter turns in {unit}");
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Requests whose every field is sound by itself, but not beside the others.
 
+use std::f64::consts::PI;
+
 use serde_json::{Value, json};
 
 use super::refusal::{Steady, good_answer};
@@ -50,7 +52,7 @@ async fn the_true_anomaly_lies_on_the_orbit() {
     for anomaly in [2.0945, 3.0, -2.0945, 4.1887, -4.1887] {
         refuses_state(&steady, &orbit(-7e6, 2.0, anomaly), &[("/true_anomaly", phrase)]).await;
     }
-    let mut parabola = orbit(0.0, 1.0, std::f64::consts::PI);
+    let mut parabola = orbit(0.0, 1.0, PI);
     parabola.as_object_mut().unwrap().remove("semi_major_axis");
     parabola["semi_latus_rectum"] = json!(7e6);
     refuses_state(&steady, &parabola, &[("/true_anomaly", phrase)]).await;
@@ -71,12 +73,14 @@ async fn both_faults_of_an_orbit_are_reported() {
 #[tokio::test]
 async fn an_altitude_lies_above_the_centre() {
     let steady = Steady::new().await;
-    for altitude in [-6_378_137.0, -7e6, -1e12] {
-        let state = with_all(
-            &state("planet_relative"),
-            [("/altitude", json!(altitude)), ("/geocentric_latitude", json!(0)), ("/sidereal_time", json!(0))],
-        );
-        refuses_state(&steady, &state, &[("/altitude", "above the planet's centre")]).await;
+    for kind in ["planet_relative", "inertial_flight_path"] {
+        for altitude in [-6_378_137.0, -7e6, -1e12] {
+            let state = with_all(
+                &state(kind),
+                [("/altitude", json!(altitude)), ("/geocentric_latitude", json!(0)), ("/sidereal_time", json!(0))],
+            );
+            refuses_state(&steady, &state, &[("/altitude", "above the planet's centre")]).await;
+        }
     }
 }
 
@@ -108,6 +112,29 @@ async fn vectors_are_not_longer_than_the_ranges_of_radius_and_speed() {
             refuses_state(&steady, &both, &[("", "the distance from"), ("", "the speed relative to")]).await;
         }
     }
+}
+
+#[tokio::test]
+async fn the_range_of_speed_is_that_relative_to_the_planet_however_the_velocity_is_given() {
+    let steady = Steady::new().await;
+    // Level and due east or due west on the equator, where the planet itself moves by 7.292115e-5 * 6378137 = 465.1 m/s.
+    let state = with_all(
+        &state("inertial_flight_path"),
+        [("/altitude", json!(0)), ("/geocentric_latitude", json!(0)), ("/inertial_flight_path_angle", json!(0))],
+    );
+    for (speed, heading, within) in
+        [(1_000_465.0, 0.0, true), (1_000_466.0, 0.0, false), (999_534.0, PI, true), (999_535.0, PI, false)]
+    {
+        let state = with_all(&state, [("/inertial_speed", json!(speed)), ("/inertial_heading", json!(heading))]);
+        if within {
+            good_answer(&steady.service, "/convert", &json!({"state": state})).await;
+        } else {
+            refuses_state(&steady, &state, &[("", "the speed relative to the rotating planet must be at most")]).await;
+        }
+    }
+    // The planet-fixed velocity of something that stands still far out.
+    let far = with_all(&state, [("/altitude", json!(1e11)), ("/inertial_speed", json!(0))]);
+    refuses_state(&steady, &far, &[("", "the speed relative to the rotating planet must be at most")]).await;
 }
 
 #[tokio::test]

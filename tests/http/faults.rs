@@ -4,13 +4,13 @@ use serde_json::{Value, json};
 
 use super::fields::{Kind, Need, fields};
 use super::refusal::Steady;
-use super::requests::{KINDS, capsule, conversion, flight, state, with, with_all, without};
+use super::requests::{ALTERNATIVES, KINDS, capsule, conversion, flight, state, with, with_all, without};
 
 #[tokio::test]
 async fn every_missing_field_is_named() {
     let steady = Steady::new().await;
     let fields: Vec<_> = fields().into_iter().filter(|field| field.need == Need::Required).collect();
-    assert_eq!(fields.len(), 76);
+    assert_eq!(fields.len(), 88);
     for field in fields {
         let request = without(&field.request, &field.pointer);
         steady.refused_at(field.path, &request, &[(&field.pointer, "is required")]).await;
@@ -132,7 +132,9 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/atmosphere/type" => "must be one of exponential, got ",
                 "/vehicle/aerodynamics/type" => "must be one of constant, got ",
                 "/solver/formulation" => "must be one of cartesian, spherical, got ",
-                _ => "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, got ",
+                _ => {
+                    "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, inertial_flight_path, got "
+                }
             };
             steady.refused_at(field.path, &request, &[(&field.pointer, phrase)]).await;
         }
@@ -145,14 +147,16 @@ async fn of_alternatives_exactly_one_is_given() {
     for (path, request, at) in
         [("/simulate", flight as fn(&str) -> Value, "/initial_state"), ("/convert", conversion, "/state")]
     {
-        for (kind, given, other) in
-            [("planet_relative", "altitude", "radius"), ("orbital_elements", "semi_major_axis", "semi_latus_rectum")]
-        {
+        for (kind, given, other, value) in ALTERNATIVES {
             let none = without(&request(kind), &format!("{at}/{given}"));
             steady.refused_at(path, &none, &[(at, "must have exactly one of ")]).await;
-            let both = with(&request(kind), &format!("{at}/{other}"), 6.5e6);
+            let both = with(&request(kind), &format!("{at}/{other}"), value);
             steady.refused_at(path, &both, &[(at, "must have exactly one of ")]).await;
         }
+        let bare = without(&request("inertial_flight_path"), &format!("{at}/altitude"));
+        let bare = without(&bare, &format!("{at}/inertial_heading"));
+        let [place, direction] = ["of radius, altitude, got none", "of inertial_heading, inertial_azimuth, got none"];
+        steady.refused_at(path, &bare, &[(at, place), (at, direction)]).await;
     }
 }
 

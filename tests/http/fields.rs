@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use serde_json::{Value, json};
 
-use super::requests::{KINDS, conversion, flight, with};
+use super::requests::{ALTERNATIVES, KINDS, conversion, flight, with, without};
 
 /// A field of a request.
 pub(crate) struct Field {
@@ -157,6 +157,24 @@ const ORBITAL_ELEMENTS: [Row; 6] = [
     ("/true_anomaly", Required, Angle(TURN)),
 ];
 
+const INERTIAL_FLIGHT_PATH: [Row; 6] = [
+    ("/altitude", Alternative, Number(DISTANCE)),
+    ("/longitude", Required, Angle(TURN)),
+    ("/geocentric_latitude", Required, Angle(QUARTER)),
+    ("/inertial_speed", Required, Number(NOT_NEGATIVE)),
+    ("/inertial_flight_path_angle", Required, Angle(QUARTER)),
+    ("/inertial_heading", Alternative, Angle(TURN)),
+];
+
+/// What the second of two alternatives holds.
+fn other_kind(name: &str) -> Kind {
+    match name {
+        "radius" => Number(RADIUS),
+        "semi_latus_rectum" => Number(POSITIVE),
+        _ => Angle(TURN),
+    }
+}
+
 /// Every field of both requests, with every kind of state.
 pub(crate) fn fields() -> Vec<Field> {
     let mut fields = Vec::new();
@@ -187,19 +205,14 @@ pub(crate) fn fields() -> Vec<Field> {
                 "planet_relative" => &PLANET_RELATIVE,
                 "geodetic" => &GEODETIC,
                 "orbital_elements" => &ORBITAL_ELEMENTS,
+                "inertial_flight_path" => &INERTIAL_FLIGHT_PATH,
                 _ => &VECTORS,
             };
             add(path, &request, state, rows);
-            let alternative = |name: &str, value: f64| {
-                let request = super::requests::without(&request, &format!("{state}{}", rows[0].0));
-                with(&request, &format!("{state}{name}"), value)
-            };
-            if kind == "planet_relative" {
-                add(path, &alternative("/radius", 6.5e6), state, &[("/radius", Alternative, Number(RADIUS))]);
-            }
-            if kind == "orbital_elements" {
-                let name = "/semi_latus_rectum";
-                add(path, &alternative(name, 6.5e6), state, &[(name, Alternative, Number(POSITIVE))]);
+            for (_, given, other, value) in ALTERNATIVES.into_iter().filter(|(of, ..)| *of == kind) {
+                let request = without(&request, &format!("{state}/{given}"));
+                let request = with(&request, &format!("{state}/{other}"), value);
+                add(path, &request, &format!("{state}/"), &[(other, Alternative, other_kind(other))]);
             }
         }
     }

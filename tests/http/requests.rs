@@ -2,8 +2,18 @@
 
 use serde_json::{Value, json};
 
-/// The five kinds of state.
-pub(crate) const KINDS: [&str; 5] = ["planet_relative", "geodetic", "ecef", "eci", "orbital_elements"];
+/// The six kinds of state.
+pub(crate) const KINDS: [&str; 6] =
+    ["planet_relative", "geodetic", "ecef", "eci", "orbital_elements", "inertial_flight_path"];
+
+/// The fields of which exactly one is given, each with the kind of its state: the one that [`state`] gives, the other, and a value
+/// for that.
+pub(crate) const ALTERNATIVES: [(&str, &str, &str, f64); 4] = [
+    ("planet_relative", "altitude", "radius", 6.5e6),
+    ("orbital_elements", "semi_major_axis", "semi_latus_rectum", 6.5e6),
+    ("inertial_flight_path", "altitude", "radius", 6.5e6),
+    ("inertial_flight_path", "inertial_heading", "inertial_azimuth", 1.1),
+];
 
 /// A state of the given kind, with every field but the second of its alternatives.
 pub(crate) fn state(kind: &str) -> Value {
@@ -17,6 +27,8 @@ pub(crate) fn state(kind: &str) -> Value {
         }
         "orbital_elements" => json!({"type": kind, "semi_major_axis": 6.5e6, "eccentricity": 0.01, "inclination": 1.1,
             "raan": 2.1, "argument_of_periapsis": 0.3, "true_anomaly": 3.5, "sidereal_time": 100}),
+        "inertial_flight_path" => json!({"type": kind, "altitude": 9e4, "longitude": -0.7, "geocentric_latitude": 0.4,
+            "inertial_speed": 7400, "inertial_flight_path_angle": -0.05, "inertial_heading": 0.5, "sidereal_time": 100}),
         _ => panic!("no such kind of state: {kind}"),
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!   orbital elements ── inertial ── planet-fixed ── flight path (planet-relative)
-//!                                        │
-//!                                     geodetic
+//!                                     │      │
+//!                              geodetic      inertial flight path
 //! ```
 //!
 //! Everything passes through [`PlanetFixed`]: position and velocity relative to the rotating planet, x through longitude 0
@@ -16,12 +16,14 @@ mod flight_path;
 mod geodetic;
 mod great_circle;
 mod inertial;
+mod inertial_flight_path;
 mod orbital_elements;
 
 pub use flight_path::FlightPath;
 pub use geodetic::{Geodetic, latitude_and_altitude};
 pub use great_circle::GreatCircle;
 pub use inertial::{Inertial, earth_rotation_angle};
+pub use inertial_flight_path::InertialFlightPath;
 pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements};
 
 use std::f64::consts::{PI, TAU};

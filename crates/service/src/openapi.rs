@@ -25,10 +25,12 @@ use crate::wire::epoch::RFC3339_PATTERN;
 )]
 pub struct Document;
 
-/// Fields of which exactly one is given.
-const ALTERNATIVES: [(&str, &[&str]); 3] = [
+/// Fields of which exactly one is given, by the name of their object.
+const ALTERNATIVES: [(&str, &[&str]); 5] = [
     ("PlanetRelative", &["radius", "altitude"]),
     ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),
+    ("InertialFlightPath", &["radius", "altitude"]),
+    ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
     ("Output", &["samples_per_step", "interval", "count", "times", "trajectory"]),
 ];
 
@@ -132,9 +134,13 @@ fn close(name: &str, schema: &mut Map<String, Value>) {
         }
     }
     schema.insert("additionalProperties".to_owned(), json!(false));
-    if let Some((_, alternatives)) = ALTERNATIVES.iter().find(|(of, _)| *of == name) {
-        let one = |field: &&str| json!({"required": [field]});
-        schema.insert("oneOf".to_owned(), alternatives.iter().map(one).collect());
+    let one = |field: &&str| json!({"required": [field]});
+    let of_name = ALTERNATIVES.iter().filter(|(of, _)| *of == name);
+    let mut choices: Vec<Value> = of_name.map(|(_, fields)| fields.iter().map(one).collect()).collect();
+    if choices.len() == 1 {
+        schema.insert("oneOf".to_owned(), choices.remove(0));
+    } else if !choices.is_empty() {
+        schema.insert("allOf".to_owned(), choices.into_iter().map(|choice| json!({"oneOf": choice})).collect());
     }
     refine(name, schema);
     if name == "Planet" {

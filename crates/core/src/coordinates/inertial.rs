@@ -41,7 +41,8 @@ fn rotation(planet: &Planet, sidereal_time: f64) -> Rotation3<f64> {
     Rotation3::from_axis_angle(&Vector3::z_axis(), planet.rotation_rate * sidereal_time)
 }
 
-fn rotation_vector(planet: &Planet) -> Vector3<f64> {
+/// ω, rad/s: along the pole.
+pub(super) fn rotation_vector(planet: &Planet) -> Vector3<f64> {
     Vector3::z() * planet.rotation_rate
 }
 

@@ -1,6 +1,9 @@
 //! The request and the answer of `/convert`.
 
-use reentry::coordinates::{FlightPath, Geodetic as CoreGeodetic, Inertial, OrbitalElements as CoreElements};
+use reentry::coordinates::{
+    FlightPath, Geodetic as CoreGeodetic, Inertial, InertialFlightPath as CoreInertialFlightPath,
+    OrbitalElements as CoreElements,
+};
 use reentry::planet::Planet as CorePlanet;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -11,7 +14,7 @@ use super::epoch::Instant;
 use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::scenario::read_epoch;
-use super::state::{Ecef, Eci, Geodetic, OrbitalElements, PlanetRelative, State};
+use super::state::{Ecef, Eci, Geodetic, InertialFlightPath, OrbitalElements, PlanetRelative, State};
 use super::trajectory::Warning;
 
 /// A state to convert. SI units; angles in `angle_unit`.
@@ -48,6 +51,8 @@ pub struct ConvertResponse {
     pub eci: Eci,
     /// The orbit; null for motion towards or away from the planet's centre, which has no elements.
     pub orbital_elements: Option<OrbitalElements>,
+    /// Speed and angles of the inertial velocity, against the geocentric horizontal.
+    pub inertial_flight_path: InertialFlightPath,
     /// What follows from the state.
     pub derived: Derived,
     /// What the user should know.
@@ -129,6 +134,11 @@ impl ConvertResponse {
             ecef: Ecef::from_core(&state, sidereal_time),
             eci: Eci::from_core(&inertial, sidereal_time),
             orbital_elements: elements_only.map(|elements| OrbitalElements::from_core(&elements, unit, sidereal_time)),
+            inertial_flight_path: InertialFlightPath::from_core(
+                &CoreInertialFlightPath::from_planet_fixed(&state, &planet),
+                unit,
+                sidereal_time,
+            ),
             derived: Derived::of(planet.shape.altitude(&state.position), &inertial, elements_only, &planet),
             warnings,
             case: request.echo.then_some(tree),

@@ -128,6 +128,11 @@ impl Object<'_> {
         self.check(name, angle, Ok)
     }
 
+    /// An angle that may be left out.
+    pub fn optional_angle(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
+        if self.has(name) { self.angle(name, bound) } else { None }
+    }
+
     /// An angle with a default.
     pub fn angle_or(&mut self, name: &'static str, bound: Bound, default: f64) -> Option<f64> {
         self.fill(name, json!(default));

@@ -1,11 +1,13 @@
-//! The states of the API: the five ways to write where a vehicle is and how it moves.
+//! The states of the API: the six ways to write where a vehicle is and how it moves.
 
 mod geodetic;
+mod inertial_flight_path;
 mod orbital_elements;
 mod planet_relative;
 mod vectors;
 
 pub use geodetic::Geodetic;
+pub use inertial_flight_path::InertialFlightPath;
 pub use orbital_elements::OrbitalElements;
 pub use planet_relative::PlanetRelative;
 pub use vectors::{Ecef, Eci};
@@ -20,7 +22,7 @@ use super::AngleUnit;
 use super::epoch::{Instant, SiderealTime};
 use super::reader::{Fault, Object};
 
-/// A state, in one of five coordinate systems. Angles are in the request's `angle_unit`.
+/// A state, in one of six coordinate systems. Angles are in the request's `angle_unit`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 #[schema(discriminator(property_name = "type", mapping(
@@ -29,6 +31,7 @@ use super::reader::{Fault, Object};
     ("ecef" = "#/components/schemas/Ecef"),
     ("eci" = "#/components/schemas/Eci"),
     ("orbital_elements" = "#/components/schemas/OrbitalElements"),
+    ("inertial_flight_path" = "#/components/schemas/InertialFlightPath"),
 )))]
 pub enum State {
     /// Speed and angles against the geocentric horizontal.
@@ -41,6 +44,8 @@ pub enum State {
     Eci(Eci),
     /// An orbit.
     OrbitalElements(OrbitalElements),
+    /// Speed and angles of the inertial velocity against the geocentric horizontal.
+    InertialFlightPath(InertialFlightPath),
 }
 
 impl State {
@@ -54,6 +59,7 @@ impl State {
                 ("ecef", |object| Ecef::read(object).map(Self::Ecef)),
                 ("eci", |object| Eci::read(object).map(Self::Eci)),
                 ("orbital_elements", |object| OrbitalElements::read(object).map(Self::OrbitalElements)),
+                ("inertial_flight_path", |object| InertialFlightPath::read(object).map(Self::InertialFlightPath)),
             ],
         )?;
         read(object)
@@ -67,10 +73,12 @@ impl State {
             Self::Ecef(state) => state.sidereal_time,
             Self::Eci(state) => state.sidereal_time,
             Self::OrbitalElements(state) => state.sidereal_time,
+            Self::InertialFlightPath(state) => state.sidereal_time,
         }
     }
 
-    /// Whether the state is given in the inertial frame.
+    /// Whether the state is given by directions of the inertial frame, which its epoch names; planet-fixed places are not, whatever
+    /// their velocity is relative to.
     pub fn is_inertial(&self) -> bool {
         matches!(self, Self::Eci(_) | Self::OrbitalElements(_))
     }
@@ -91,6 +99,7 @@ impl State {
             Self::PlanetRelative(state) => state.faults(pointer, unit, planet),
             Self::OrbitalElements(state) => state.faults(pointer, unit),
             Self::Geodetic(state) => state.faults(pointer, unit, planet),
+            Self::InertialFlightPath(state) => state.faults(pointer, unit, planet),
             Self::Ecef(_) | Self::Eci(_) => Vec::new(),
         };
         let sidereal_time = match (self.sidereal_time(), epoch) {
@@ -115,6 +124,7 @@ impl State {
         match self {
             Self::PlanetRelative(state) => state.to_core(unit, planet).to_planet_fixed(),
             Self::Geodetic(state) => state.to_core(unit).to_planet_fixed(&planet.shape),
+            Self::InertialFlightPath(state) => state.to_core(unit, planet).to_planet_fixed(planet),
             Self::Ecef(state) => PlanetFixed { position: state.position.into(), velocity: state.velocity.into() },
             Self::Eci(state) => {
                 let inertial = Inertial { position: state.position.into(), velocity: state.velocity.into() };
@@ -131,6 +141,22 @@ impl State {
 /// Reads the field that every state may have.
 fn sidereal_time(object: &mut Object) -> Option<SiderealTime> {
     if object.has("sidereal_time") { object.value("sidereal_time", SiderealTime::read) } else { None }
+}
+
+/// The distance from the centre, m, of a place that is given by exactly one of radius and altitude, at a geocentric latitude, rad.
+fn radius_of(radius: Option<f64>, altitude: Option<f64>, geocentric_latitude: f64, planet: &Planet) -> f64 {
+    let (sin_latitude, cos_latitude) = geocentric_latitude.sin_cos();
+    let surface = planet.shape.surface_radius(sin_latitude, cos_latitude);
+    let above_surface = altitude.map(|altitude| surface + altitude);
+    radius.or(above_surface).unwrap_or(surface)
+}
+
+/// What is wrong with an altitude that puts a state at the pointer on the centre or beyond it.
+fn centre_faults(pointer: &str, radius: f64, altitude: Option<f64>) -> Vec<Fault> {
+    let surface = radius - altitude.unwrap_or(0.0);
+    let detail = || format!("must lie above the planet's centre, {surface:.0} m below the surface here");
+    let fault = (radius <= 0.0).then(|| Fault::new(format!("{pointer}/altitude"), detail()));
+    fault.into_iter().collect()
 }
 
 /// The length of a vector that was checked against the bound, and may exceed it by a rounding: the answer can be sent back.

@@ -6,7 +6,7 @@ use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::{sidereal_time, within};
+use super::{centre_faults, radius_of, sidereal_time, within};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
 use crate::wire::reader::{Fault, Object};
@@ -72,20 +72,13 @@ impl PlanetRelative {
 
     /// The altitude must not reach down to the centre.
     pub(super) fn faults(&self, pointer: &str, unit: AngleUnit, planet: &Planet) -> Vec<Fault> {
-        let radius = self.to_core(unit, planet).radius;
-        let surface = radius - self.altitude.unwrap_or(0.0);
-        let detail = || format!("must lie above the planet's centre, {surface:.0} m below the surface here");
-        let fault = (radius <= 0.0).then(|| Fault::new(format!("{pointer}/altitude"), detail()));
-        fault.into_iter().collect()
+        centre_faults(pointer, self.to_core(unit, planet).radius, self.altitude)
     }
 
     pub(super) fn to_core(&self, unit: AngleUnit, planet: &Planet) -> FlightPath<f64> {
         let geocentric_latitude = unit.to_radians(self.geocentric_latitude);
-        let (sin_latitude, cos_latitude) = geocentric_latitude.sin_cos();
-        let surface = planet.shape.surface_radius(sin_latitude, cos_latitude);
-        let above_surface = self.altitude.map(|altitude| surface + altitude);
         FlightPath {
-            radius: self.radius.or(above_surface).unwrap_or(surface),
+            radius: radius_of(self.radius, self.altitude, geocentric_latitude, planet),
             longitude: unit.to_radians(self.longitude),
             geocentric_latitude,
             speed: self.speed,

@@ -1,0 +1,120 @@
+//! The type `inertial_flight_path`.
+
+use std::f64::consts::FRAC_PI_2;
+
+use reentry::coordinates;
+use reentry::planet::Planet;
+use reentry::scenario::Bound;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::{centre_faults, radius_of, sidereal_time, within};
+use crate::wire::AngleUnit;
+use crate::wire::epoch::SiderealTime;
+use crate::wire::reader::{Fault, Object};
+
+/// A place on the rotating planet and the inertial velocity there, against the geocentric horizontal: the entry interface as flight
+/// reports quote it.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct InertialFlightPath {
+    /// The kind of state.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Distance from the planet's centre, m. Exactly one of `radius` and `altitude`.
+    #[schema(exclusive_minimum = 0, maximum = 1e12)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Height above the planet's shape along the radius vector, m. Exactly one of `radius` and `altitude`.
+    #[schema(minimum = -1e12, maximum = 1e12)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub altitude: Option<f64>,
+    /// Planet-fixed, east positive, within ±2π (±360°).
+    #[schema(minimum = -360, maximum = 360)]
+    pub longitude: f64,
+    /// Within ±π/2 (±90°).
+    #[schema(minimum = -90, maximum = 90)]
+    pub geocentric_latitude: f64,
+    /// Magnitude of the inertial velocity, m/s; relative to the rotating planet at most 1e6.
+    #[schema(minimum = 0)]
+    pub inertial_speed: f64,
+    /// Of the inertial velocity above the local horizontal (the plane normal to the radius), within ±π/2 (±90°).
+    #[schema(minimum = -90, maximum = 90)]
+    pub inertial_flight_path_angle: f64,
+    /// Of the inertial velocity, from east (0) towards north (π/2), within ±2π (±360°). Exactly one of `inertial_heading` and
+    /// `inertial_azimuth`.
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertial_heading: Option<f64>,
+    /// Of the inertial velocity, clockwise from north, within ±2π (±360°). Exactly one of `inertial_heading` and `inertial_azimuth`.
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertial_azimuth: Option<f64>,
+    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sidereal_time: Option<SiderealTime>,
+}
+
+impl InertialFlightPath {
+    pub(super) fn read(object: &mut Object) -> Option<Self> {
+        let radius = object.optional_number("radius", Bound::RADIUS);
+        let altitude = object.optional_number("altitude", Bound::DISTANCE);
+        let place = object.exactly_one(&["radius", "altitude"]);
+        let longitude = object.angle("longitude", Bound::TURN);
+        let geocentric_latitude = object.angle("geocentric_latitude", Bound::QUARTER_TURN);
+        let inertial_speed = object.number("inertial_speed", Bound::NON_NEGATIVE);
+        let inertial_flight_path_angle = object.angle("inertial_flight_path_angle", Bound::QUARTER_TURN);
+        let inertial_heading = object.optional_angle("inertial_heading", Bound::TURN);
+        let inertial_azimuth = object.optional_angle("inertial_azimuth", Bound::TURN);
+        let direction = object.exactly_one(&["inertial_heading", "inertial_azimuth"]);
+        let sidereal_time = sidereal_time(object);
+        place?;
+        direction?;
+        Some(Self {
+            kind: "inertial_flight_path",
+            radius,
+            altitude,
+            longitude: longitude?,
+            geocentric_latitude: geocentric_latitude?,
+            inertial_speed: inertial_speed?,
+            inertial_flight_path_angle: inertial_flight_path_angle?,
+            inertial_heading,
+            inertial_azimuth,
+            sidereal_time,
+        })
+    }
+
+    /// The altitude must not reach down to the centre.
+    pub(super) fn faults(&self, pointer: &str, unit: AngleUnit, planet: &Planet) -> Vec<Fault> {
+        centre_faults(pointer, self.to_core(unit, planet).radius, self.altitude)
+    }
+
+    pub(super) fn to_core(&self, unit: AngleUnit, planet: &Planet) -> coordinates::InertialFlightPath {
+        let geocentric_latitude = unit.to_radians(self.geocentric_latitude);
+        let heading = self.inertial_heading.map(|heading| unit.to_radians(heading));
+        let from_azimuth = self.inertial_azimuth.map(|azimuth| FRAC_PI_2 - unit.to_radians(azimuth));
+        coordinates::InertialFlightPath {
+            radius: radius_of(self.radius, self.altitude, geocentric_latitude, planet),
+            longitude: unit.to_radians(self.longitude),
+            geocentric_latitude,
+            inertial_speed: self.inertial_speed,
+            inertial_flight_path_angle: unit.to_radians(self.inertial_flight_path_angle),
+            inertial_heading: heading.or(from_azimuth).unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The state in the given unit of angles.
+    pub fn from_core(state: &coordinates::InertialFlightPath, unit: AngleUnit, sidereal_time: f64) -> Self {
+        Self {
+            kind: "inertial_flight_path",
+            radius: Some(within(Bound::RADIUS, state.radius)),
+            altitude: None,
+            longitude: unit.from_radians(state.longitude),
+            geocentric_latitude: unit.from_radians(state.geocentric_latitude),
+            inertial_speed: state.inertial_speed,
+            inertial_flight_path_angle: unit.from_radians(state.inertial_flight_path_angle),
+            inertial_heading: Some(unit.from_radians(state.inertial_heading)),
+            inertial_azimuth: None,
+            sidereal_time: Some(SiderealTime(sidereal_time)),
+        }
+    }
+}
