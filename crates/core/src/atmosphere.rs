@@ -57,7 +57,7 @@ impl Atmosphere {
     /// the density grows no more: there it is e⁷⁰⁰ times its surface value, and further down no number would hold it.
     #[inline(always)]
     pub fn density<S: Scalar>(&self, _: usize, altitude: S) -> S {
-        if let Self::Us76 = self { return us76::density(altitude) }
+        if let Self::Us76 = self { return Self::other(altitude) }
         let (surface_density, scale_height) = match *self {
             Self::Exponential { surface_density, scale_height } => (surface_density, scale_height),
             _ => (0.0, 6935.0),
@@ -68,7 +68,10 @@ impl Atmosphere {
         (-clamped).exp() * surface_density
     }
 
+    #[inline(never)]
+    fn other<S: Scalar>(altitude: S) -> S { us76::density(altitude) }
     /// stub
+    #[inline(never)]
     pub fn density_and_sound<S: Scalar>(&self, _: usize, altitude: S) -> (S, S) {
         let sample = us76::sample(altitude);
         (sample.density, sample.speed_of_sound.unwrap_or(S::zero()))

@@ -18,7 +18,7 @@ use crate::control::{Against, Command, Control};
 use crate::coordinates::PlanetFixed;
 use crate::integrate::Pace;
 use crate::interpolation::Hint;
-use crate::planet::{Planet, Pull};
+use crate::planet::{Gravity, Planet, Pull};
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
@@ -43,6 +43,9 @@ pub struct Forces<P = f64> {
     sin_cos_bank: (P, P),
     regime: Regime,
     has_switches: bool,
+    /// Whether all models are those of the thesis. Functions with a constant `THESIS` know it when they are compiled, so that what
+    /// a case does not use does not cost it a tenth of its time.
+    of_thesis: bool,
     /// Whether coefficients or angles depend on the Mach number.
     by_mach: bool,
     cells: Cells,
@@ -162,9 +165,10 @@ impl<P: Scalar> Forces<P> {
         let area_over_mass = parameters.reference_area * parameters.mass.recip();
         let sin_cos_bank = parameters.bank_angle.sin_cos();
         let by_mach = models.depend_on_mach();
+        let of_thesis = models.are_of_thesis();
         let (regime, has_switches, cells) = (Regime::default(), false, Cells::default());
         let mut forces =
-            Self { models, parameters, area_over_mass, sin_cos_bank, regime, has_switches, by_mach, cells };
+            Self { models, parameters, area_over_mass, sin_cos_bank, regime, has_switches, of_thesis, by_mach, cells };
         forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
         forces
     }
@@ -179,14 +183,27 @@ impl<P: Scalar> Forces<P> {
     /// Jameson 2006, equations 17 and 21 to 23, without the step to the vehicle-pointing axes.
     #[inline(always)]
     pub fn acceleration<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+        if self.of_thesis { self.acceleration_by::<true, S>(time, state) } else { self.acceleration_by_any(time, state) }
+    }
+
+    /// Not inlined: the models that the thesis does not have would be in the way of those that it has.
+    #[inline(never)]
+    fn acceleration_by_any<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+        self.acceleration_by::<false, S>(time, state)
+    }
+
+    #[inline(always)]
+    fn acceleration_by<const THESIS: bool, S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
         let PlanetFixed { position, velocity } = state;
-        let flow = self.flow(state);
+        let flow = self.flow::<THESIS, _>(state);
         let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
-        let mut fall = self.models.planet.gravity(flow.directions.radius, &flow.directions.up);
+        let Directions { radius, up, .. } = &flow.directions;
+        let planet = &self.models.planet;
+        let mut fall = if THESIS { planet.gravity_of_point(*radius, up) } else { planet.gravity(*radius, up) };
         fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
         fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
-        self.aerodynamic(time, &flow) + fall
+        self.aerodynamic::<THESIS, _>(time, &flow) + fall
     }
 
     /// Lift and drag over the mass, m/s².
@@ -200,28 +217,28 @@ impl<P: Scalar> Forces<P> {
     /// # Reference
     /// Jameson 2006, equations 22, 36 and 37.
     #[inline(always)]
-    fn aerodynamic<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Vector3<S> {
+    fn aerodynamic<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Vector3<S> {
         let Directions { up, ahead, left, cos_gamma, .. } = &flow.directions;
-        let air = self.air(time, flow);
+        let air = self.air::<THESIS, _>(time, flow);
         let lift = air.lift * lift_fade_over_cosine(*cos_gamma);
-        let (sin_bank, cos_bank) = self.sin_cos_bank(time, flow);
+        let (sin_bank, cos_bank) = self.sin_cos_bank::<THESIS, _>(time, flow);
         let (lift_left, lift_up) = (lift * sin_bank, lift * cos_bank);
         let against = air.drag + lift_up * up.dot(ahead);
         // The density, an exponential, is what all else would wait for.
-        let density = self.density(flow);
+        let density = self.density::<THESIS, _>(flow);
         Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density)
     }
 
     /// The air that meets a vehicle in a state.
     #[inline(always)]
-    fn flow<S: Over<P>>(&self, state: &PlanetFixed<S>) -> Flow<S> {
+    fn flow<const THESIS: bool, S: Over<P>>(&self, state: &PlanetFixed<S>) -> Flow<S> {
         let PlanetFixed { position, velocity } = state;
         let altitude = self.models.planet.shape.altitude(position);
-        match self.wind(altitude) {
+        match self.wind::<THESIS, _>(altitude) {
             None => {
                 let directions = Directions::of(position, velocity);
                 let ground_speed = directions.speed;
-                self.flow_of(altitude, directions, ground_speed)
+                self.flow_of::<THESIS, _>(altitude, directions, ground_speed)
             }
             Some([east, north]) => {
                 let [x, y, z] = [position.x, position.y, position.z];
@@ -232,7 +249,7 @@ impl<P: Scalar> Forces<P> {
                 let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
                 let north = to_north * (over_equatorial * over_radius * north);
                 let directions = Directions::of(position, &(velocity - east - north));
-                self.flow_of(altitude, directions, length(velocity))
+                self.flow_of::<THESIS, _>(altitude, directions, length(velocity))
             }
         }
     }
@@ -240,8 +257,8 @@ impl<P: Scalar> Forces<P> {
     /// The air at an altitude, m, that meets a vehicle in the directions of its velocity relative to the air, at a speed relative to
     /// the planet, m/s.
     #[inline(always)]
-    fn flow_of<S: Over<P>>(&self, altitude: S, directions: Directions<S>, ground_speed: S) -> Flow<S> {
-        let density_and_mach = self.by_mach.then(|| {
+    fn flow_of<const THESIS: bool, S: Over<P>>(&self, altitude: S, directions: Directions<S>, ground_speed: S) -> Flow<S> {
+        let density_and_mach = (!THESIS && self.by_mach).then(|| {
             let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), altitude);
             (density, directions.speed * sound.recip())
         });
@@ -250,8 +267,9 @@ impl<P: Scalar> Forces<P> {
 
     /// The wind at an altitude, m, to the east and to the north, m/s.
     #[inline(always)]
-    fn wind<S: Over<P>>(&self, altitude: S) -> Option<[S; 2]> {
+    fn wind<const THESIS: bool, S: Over<P>>(&self, altitude: S) -> Option<[S; 2]> {
         match &self.models.wind {
+            _ if THESIS => None,
             Wind::Still => None,
             Wind::Constant { east, north } => Some([S::from(*east), S::from(*north)]),
             Wind::Table(table) => Some(table.velocity(self.regime.of(Switch::Wind), altitude, &self.cells.wind)),
@@ -260,7 +278,7 @@ impl<P: Scalar> Forces<P> {
 
     /// ρ, kg/m³.
     #[inline(always)]
-    fn density<S: Over<P>>(&self, flow: &Flow<S>) -> S {
+    fn density<const THESIS: bool, S: Over<P>>(&self, flow: &Flow<S>) -> S {
         let of_model = match flow.density_and_mach {
             Some((density, _)) => density,
             None => self.models.atmosphere.density(self.regime.of(Switch::Atmosphere), flow.altitude),
@@ -270,11 +288,11 @@ impl<P: Scalar> Forces<P> {
 
     /// What the air does to the vehicle.
     #[inline(always)]
-    fn air<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Air<S> {
+    fn air<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Air<S> {
         let speed = flow.directions.speed;
         let acceleration = speed * speed * 0.5 * self.area_over_mass;
         let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
-        match self.coefficients(time, flow) {
+        match self.coefficients::<THESIS, _>(time, flow) {
             None => Air { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient },
             Some(Coefficients { lift, drag }) => {
                 Air { drag: acceleration * (drag + drag_coefficient), lift: acceleration * (lift + lift_coefficient) }
@@ -284,9 +302,10 @@ impl<P: Scalar> Forces<P> {
 
     /// The coefficients of the model, if they are not all in the parameters.
     #[inline(always)]
-    fn coefficients<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Option<Coefficients<S>> {
+    fn coefficients<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Option<Coefficients<S>> {
         let [alpha, mach] = [Switch::TableAngleOfAttack, Switch::Mach].map(|switch| self.regime.of(switch));
         match &self.models.aerodynamics {
+            _ if THESIS => None,
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => None,
             Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &self.cells.mach)),
             Aerodynamics::AlphaMachTable(table) => {
@@ -298,13 +317,13 @@ impl<P: Scalar> Forces<P> {
 
     /// Sine and cosine of σ.
     #[inline(always)]
-    fn sin_cos_bank<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
+    fn sin_cos_bank<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
         match &self.models.control.bank_angle {
-            Command::Constant(_) => {
+            Command::Schedule(_) if !THESIS => self.bank_angle(time, flow).sin_cos(),
+            _ => {
                 let (sin_bank, cos_bank) = self.sin_cos_bank;
                 (S::zero() + sin_bank, S::zero() + cos_bank)
             }
-            Command::Schedule(_) => self.bank_angle(time, flow).sin_cos(),
         }
     }
 
@@ -330,6 +349,20 @@ impl<P: Scalar> Forces<P> {
 }
 
 impl Models {
+    /// Whether the thesis knows them all.
+    fn are_of_thesis(&self) -> bool {
+        matches!(
+            self,
+            Self {
+                planet: Planet { gravity: Gravity::InverseSquare, .. },
+                atmosphere: Atmosphere::Exponential { .. },
+                wind: Wind::Still,
+                aerodynamics: Aerodynamics::Constant { .. },
+                control: Control { bank_angle: Command::Constant(_), angle_of_attack: Command::Constant(_) },
+            }
+        )
+    }
+
     /// Whether coefficients or angles depend on the Mach number.
     fn depend_on_mach(&self) -> bool {
         let Control { bank_angle, angle_of_attack } = &self.control;
@@ -377,7 +410,7 @@ impl Forces {
     /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
     fn longest_step(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
         let PlanetFixed { position, velocity } = state;
-        let flow = self.flow(state);
+        let flow = self.flow::<false, _>(state);
         let radius = length(position);
         let to_air = (flow.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
         let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
@@ -389,14 +422,14 @@ impl Forces {
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
         let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
 
-        let air = self.air(time, &flow);
-        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density(&flow));
+        let air = self.air::<false, _>(time, &flow);
+        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density::<false, _>(&flow));
         if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
     /// The power that lift and drag take from the vehicle, over its mass, W/kg.
     pub(crate) fn power_lost(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
-        -self.aerodynamic(time, &self.flow(state)).dot(&state.velocity)
+        -self.aerodynamic::<false, _>(time, &self.flow::<false, _>(state)).dot(&state.velocity)
     }
 
     /// D/m, m/s², of constant coefficients under a dynamic pressure, Pa.
@@ -407,15 +440,15 @@ impl Forces {
     /// The loads in a state.
     pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, time: S, state: &PlanetFixed<S>) -> Loads<S> {
         let PlanetFixed { position, velocity } = state;
-        let mut flow = self.flow(state);
+        let mut flow = self.flow::<false, _>(state);
         if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
             let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), flow.altitude);
             flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
         }
         let Directions { radius, speed, up, ahead, cos_gamma, .. } = &flow.directions;
-        let density = self.density(&flow);
+        let density = self.density::<false, _>(&flow);
         let dynamic_pressure = density * *speed * *speed * 0.5;
-        let air = self.air(time, &flow);
+        let air = self.air::<false, _>(time, &flow);
         let deceleration = if flow.ground_speed.less_than(f64::MIN_POSITIVE) {
             -length(&self.acceleration(time, state))
         } else if matches!(self.models.wind, Wind::Still) {
@@ -447,19 +480,19 @@ impl Forces {
     fn lift_and_drag_coefficient<S: Over<f64>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
         let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
         let Coefficients { lift, drag } =
-            self.coefficients(time, flow).unwrap_or(Coefficients { lift: S::zero(), drag: S::zero() });
+            self.coefficients::<false, _>(time, flow).unwrap_or(Coefficients { lift: S::zero(), drag: S::zero() });
         (lift + lift_coefficient, drag + drag_coefficient)
     }
 
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
     pub fn cos_squared_angle_to_air<S: Over<f64>>(&self, state: &PlanetFixed<S>) -> S {
-        let left = self.flow(state).directions.left;
+        let left = self.flow::<false, _>(state).directions.left;
         left.dot(&left)
     }
 
     /// The angles at which the vehicle flies in a state: σ and α, rad.
     pub fn angles(&self, time: f64, state: &PlanetFixed<f64>) -> [f64; 2] {
-        let flow = self.flow(state);
+        let flow = self.flow::<false, _>(state);
         [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
     }
 

@@ -151,14 +151,18 @@ impl Planet {
         (radius * radius).recip() * self.gravitational_parameter
     }
 
+    /// [`gravity`](Self::gravity) without its harmonics.
+    #[inline(always)]
+    pub(crate) fn gravity_of_point<S: Scalar>(&self, radius: S, up: &Vector3<S>) -> Vector3<S> {
+        let inward = self.point_gravity(radius);
+        up.map(|component| component * -inward)
+    }
+
     /// Acceleration of gravity, m/s², at a distance from the centre, m, in the planet-fixed direction `up`, of length 1.
     #[inline(always)]
     pub fn gravity<S: Scalar>(&self, radius: S, up: &Vector3<S>) -> Vector3<S> {
         match self.gravity {
-            Gravity::InverseSquare => {
-                let inward = self.point_gravity(radius);
-                up.map(|component| component * -inward)
-            }
+            Gravity::InverseSquare => self.gravity_of_point(radius, up),
             Gravity::Zonal(_) => {
                 let Pull { inward, axial } = self.pull(radius, up.z);
                 let mut gravity = up.map(|component| component * -inward);

@@ -135,7 +135,7 @@ impl<P: Scalar> Forces<P> {
         if !self.has_switches {
             return [S::zero(); Switch::ALL.len()];
         }
-        let flow = self.flow(state);
+        let flow = self.flow::<false, _>(state);
         Switch::ALL.map(|switch| match self.boundaries(switch) {
             Some((quantity, _)) => self.quantity_of(quantity, time, &flow),
             None => S::zero(),

@@ -13,9 +13,22 @@ use crate::scalar::{Over, Scalar};
 pub struct Spherical<P = f64>(pub Forces<P>);
 
 impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
-    /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text, with forces of any direction.
     #[inline(always)]
     fn derivative(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
+        if self.0.of_thesis { self.rates::<true, S>(time, coordinates) } else { self.rates_by_any(time, coordinates) }
+    }
+}
+
+impl<P: Scalar> Spherical<P> {
+    /// Not inlined, for the sake of the models of the thesis.
+    #[inline(never)]
+    fn rates_by_any<S: Over<P>>(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
+        self.rates::<false, S>(time, coordinates)
+    }
+
+    /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text, with forces of any direction.
+    #[inline(always)]
+    fn rates<const THESIS: bool, S: Over<P>>(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
         let planet = self.0.models.planet;
         let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
             FlightPath::from(*coordinates);
@@ -26,8 +39,9 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
 
         let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
         let velocity = Velocity { speed: v, sin_gamma, cos_gamma, sin_psi, cos_psi };
-        let [ahead, up, left_over_cos_gamma] = self.aerodynamic(time, altitude, r, &velocity);
-        let Pull { inward, axial } = planet.pull(r, sin_phi);
+        let [ahead, up, left_over_cos_gamma] = self.aerodynamic::<THESIS, _>(time, altitude, r, &velocity);
+        let Pull { inward, axial } =
+            if THESIS { Pull { inward: planet.point_gravity(r), axial: S::zero() } } else { planet.pull(r, sin_phi) };
         // Gravity towards the centre, and to the north.
         let (g, g_north) = (inward + axial * sin_phi, -axial * cos_phi);
         // rω² cos φ
@@ -71,26 +85,26 @@ struct Velocity<S> {
 impl<P: Scalar> Spherical<P> {
     /// Lift and drag over the mass, m/s²: along the velocity, across it upward, and across it to the left over cos γ.
     #[inline(always)]
-    fn aerodynamic<S: Over<P>>(&self, time: S, altitude: S, radius: S, velocity: &Velocity<S>) -> [S; 3] {
+    fn aerodynamic<const THESIS: bool, S: Over<P>>(&self, time: S, altitude: S, radius: S, velocity: &Velocity<S>) -> [S; 3] {
         let Velocity { speed, sin_gamma, cos_gamma, sin_psi, cos_psi } = *velocity;
         // Up, east and north are axes like any others.
         let unit = [sin_gamma, cos_gamma * cos_psi, cos_gamma * sin_psi];
         let [up, east, north] = unit.map(|part| part * speed);
         let position = Vector3::new(radius, S::zero(), S::zero());
         let forces = &self.0;
-        match forces.wind(altitude) {
+        match forces.wind::<THESIS, _>(altitude) {
             None => {
                 let still = Directions { speed, ..Directions::of(&position, &Vector3::new(up, east, north)) };
-                let flow = forces.flow_of(altitude, still, speed);
-                let (air, density) = (forces.air(time, &flow), forces.density(&flow));
+                let flow = forces.flow_of::<THESIS, _>(altitude, still, speed);
+                let (air, density) = (forces.air::<THESIS, _>(time, &flow), forces.density::<THESIS, _>(&flow));
                 let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
-                let (sin_sigma, cos_sigma) = forces.sin_cos_bank(time, &flow);
+                let (sin_sigma, cos_sigma) = forces.sin_cos_bank::<THESIS, _>(time, &flow);
                 [-(air.drag * density), lift_over_cos_gamma * cos_gamma * cos_sigma, lift_over_cos_gamma * sin_sigma]
             }
             Some([to_east, to_north]) => {
                 let relative = Vector3::new(up, east - to_east, north - to_north);
-                let flow = forces.flow_of(altitude, Directions::of(&position, &relative), speed);
-                let force = forces.aerodynamic(time, &flow);
+                let flow = forces.flow_of::<THESIS, _>(altitude, Directions::of(&position, &relative), speed);
+                let force = forces.aerodynamic::<THESIS, _>(time, &flow);
                 let level = force.y * cos_psi + force.z * sin_psi;
                 [
                     force.x * sin_gamma + level * cos_gamma,
