@@ -44,17 +44,17 @@ pub struct Vehicle {
 
 /// The coefficients of an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+pub struct Coefficients<S> {
     /// `C_L`.
-    pub lift: f64,
+    pub lift: S,
     /// `C_D`.
-    pub drag: f64,
+    pub drag: S,
 }
 
 impl Aerodynamics {
-    /// Lift and drag coefficient.
+    /// Lift and drag coefficient, where they are the same at every speed and given as such; else none of either.
     #[inline(always)]
-    pub fn coefficients(&self) -> Coefficients {
+    pub fn coefficients(&self) -> Coefficients<f64> {
         match *self {
             Self::Constant { lift_coefficient, drag_coefficient } => {
                 Coefficients { lift: lift_coefficient, drag: drag_coefficient }
@@ -62,11 +62,22 @@ impl Aerodynamics {
             _ => Coefficients { lift: 0.0, drag: 0.0 },
         }
     }
+
+    /// Whether there is any lift.
+    pub fn has_lift(&self) -> bool {
+        match self {
+            Self::Constant { lift_coefficient, .. } => *lift_coefficient != 0.0,
+            Self::Ballistic { lift_to_drag, .. } => *lift_to_drag != 0.0,
+            Self::MachTable(table) => table.has_lift(),
+            Self::AlphaMachTable(table) => table.has_lift(),
+        }
+    }
 }
 
 impl Vehicle {
     /// Whether the vehicle has any lift.
     pub fn has_lift(&self) -> bool {
-        self.aerodynamics.coefficients().lift != 0.0 && self.reference_area > 0.0
+        let without_area = matches!(self.aerodynamics, Aerodynamics::Ballistic { .. });
+        self.aerodynamics.has_lift() && (without_area || self.reference_area > 0.0)
     }
 }
