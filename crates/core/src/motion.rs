@@ -13,6 +13,7 @@ use crate::atmosphere::Atmosphere;
 use crate::control::Control;
 use crate::coordinates::PlanetFixed;
 use crate::integrate::Pace;
+use crate::interpolation::Hint;
 use crate::planet::Planet;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
@@ -167,7 +168,7 @@ impl<P: Scalar> Forces<P> {
     /// ρ, kg/m³, at an altitude, m.
     #[inline(always)]
     fn density<S: Over<P>>(&self, altitude: S) -> S {
-        self.models.atmosphere.density(altitude) * self.parameters.density
+        self.models.atmosphere.density(0, altitude, &Hint::default()) * self.parameters.density
     }
 
     /// What the air does to a vehicle of a speed, m/s.
