@@ -99,7 +99,7 @@ impl Table {
         self.sensible_altitude
     }
 
-    /// The least height, m, over which the density falls by e, measured from entry to entry; at least a thousandth of the table's.
+    /// The least height, m, over which the density falls by e, measured from entry to entry; at least a thousandth of the table's, at most all of it.
     pub fn scale_height(&self) -> f64 {
         self.scale_height
     }
@@ -136,7 +136,7 @@ fn sensible_altitude(altitude: &[f64], log_density: &[f64], interpolated: &Cubic
 /// The least height, m, over which the density falls by e, from entry to entry.
 ///
 /// Steps of the integration have to do with it, which a cliff between two entries must not make tiny: it is at least a
-/// thousandth of the height of the table, and that height itself where the density falls nowhere.
+/// thousandth of the height of the table. It is at most that height, even where the density falls nowhere.
 fn least_scale_height(altitude: &[f64], log_density: &[f64]) -> f64 {
     let height = altitude[altitude.len() - 1] - altitude[0];
     let cells = altitude.windows(2).zip(log_density.windows(2));
