@@ -3,8 +3,8 @@
 use num_dual::Dual64;
 use proptest::prelude::*;
 use reentry::atmosphere::AtmosphereSample;
-use reentry::atmosphere::us76::{BOUNDARIES, density, sample};
-use reentry::scalar::Lanes;
+use reentry::atmosphere::us76::{self, BOUNDARIES, density, density_in, stretch};
+use reentry::scalar::{Lanes, Scalar};
 use reentry_tests::cases::read_csv;
 
 use crate::check::{near, relative};
@@ -12,6 +12,34 @@ use crate::flights::config;
 
 /// r₀, m, of the standard.
 const RADIUS: f64 = 6_356_766.0;
+
+/// The air, of which the standard knows everything.
+#[derive(Clone, Copy)]
+struct Air<S> {
+    density: S,
+    temperature: S,
+    pressure: S,
+    speed_of_sound: S,
+}
+
+impl<S> From<AtmosphereSample<S>> for Air<S> {
+    fn from(air: AtmosphereSample<S>) -> Self {
+        Self {
+            density: air.density,
+            temperature: air.temperature.unwrap(),
+            pressure: air.pressure.unwrap(),
+            speed_of_sound: air.speed_of_sound.unwrap(),
+        }
+    }
+}
+
+fn sample<S: Scalar<Mask = bool>>(altitude: S) -> Air<S> {
+    us76::sample(altitude).into()
+}
+
+fn sample_in<S: Scalar>(stretch: usize, altitude: S) -> Air<S> {
+    us76::sample_in(stretch, altitude).into()
+}
 
 /// A number that was rounded, or cut off, when it was printed.
 const ROUNDED: f64 = 0.5;
@@ -130,6 +158,22 @@ fn slopes_at_boundaries_are_those_from_each_side() {
     }
 }
 
+/// A trial stage that looks ten kilometres over a boundary sees the curve that it is on go on.
+#[test]
+fn formulas_go_on_over_their_boundaries() {
+    for (below, boundary) in BOUNDARIES.into_iter().enumerate() {
+        for (stretch, side) in [(below, -1.0), (below + 1, 1.0)] {
+            let inside = density_in(stretch, Dual64::new(boundary + 1e-3 * side, 1.0));
+            let outside = density_in(stretch, Dual64::new(boundary - 1e-3 * side, 1.0));
+            let far = density_in(stretch, Dual64::new(boundary - 10e3 * side, 1.0));
+            // Where nitrogen leaves the mixed air, at 100 km, its scale height jumps by 3 %, and the formula for all gases with it.
+            relative("slope", outside.eps, inside.eps, if below == 10 { 4e-2 } else { 1e-5 });
+            let scale_height = -far.re / far.eps;
+            assert!((4e3..400e3).contains(&scale_height), "{scale_height} m beyond {boundary} m by {stretch}");
+        }
+    }
+}
+
 #[test]
 fn density_falls_from_below_the_ground_to_beyond_the_top() {
     let densities: Vec<_> = (-300..200_000).map(|step| density(10.0 * f64::from(step))).collect();
@@ -140,11 +184,11 @@ fn density_falls_from_below_the_ground_to_beyond_the_top() {
 }
 
 /// Which numbers, in the order of the fields.
-fn numbers<S>(air: AtmosphereSample<S>) -> [S; 4] {
+fn numbers<S>(air: Air<S>) -> [S; 4] {
     [air.density, air.temperature, air.pressure, air.speed_of_sound]
 }
 
-fn digits(air: AtmosphereSample<f64>) -> [u64; 4] {
+fn digits(air: Air<f64>) -> [u64; 4] {
     numbers(air).map(f64::to_bits)
 }
 
@@ -158,12 +202,19 @@ proptest! {
 
     #[test]
     fn lanes_and_dual_numbers_have_the_digits_of_f64(altitudes in prop::array::uniform8(altitude())) {
-        let lanes = numbers(sample(Lanes(altitudes)));
-        for (lane, altitude) in altitudes.into_iter().enumerate() {
+        for here in (0..=BOUNDARIES.len()).chain([stretch(altitudes[0])]) {
+            let lanes = numbers(sample_in(here, Lanes(altitudes)));
+            for (lane, altitude) in altitudes.into_iter().enumerate() {
+                let alone = digits(sample_in(here, altitude));
+                prop_assert_eq!(lanes.map(|number| number.0[lane].to_bits()), alone, "at {} m by {}", altitude, here);
+                let dual = numbers(sample_in(here, Dual64::new(altitude, 1.0)));
+                prop_assert_eq!(dual.map(|number| number.re.to_bits()), alone, "at {} m by {}", altitude, here);
+                prop_assert_eq!(density_in(here, altitude).to_bits(), alone[0]);
+            }
+        }
+        for altitude in altitudes {
             let alone = digits(sample(altitude));
-            prop_assert_eq!(lanes.map(|number| number.0[lane].to_bits()), alone, "at {} m", altitude);
-            let dual = numbers(sample(Dual64::new(altitude, 1.0)));
-            prop_assert_eq!(dual.map(|number| number.re.to_bits()), alone, "at {} m", altitude);
+            prop_assert_eq!(alone, digits(sample_in(stretch(altitude), altitude)));
             prop_assert_eq!(density(altitude).to_bits(), alone[0]);
         }
     }

@@ -14,5 +14,6 @@ mod openapi;
 mod pitfalls;
 mod properties;
 mod reference;
+mod tables;
 mod tidy;
 mod verification;

@@ -4,11 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
-const CORE: [&[&str]; 9] = [
+const CORE: [&[&str]; 10] = [
     &["scalar", "root"],
-    &["integrate"],
-    &["planet", "atmosphere", "vehicle"],
+    &["integrate", "interpolation"],
+    &["planet", "atmosphere", "vehicle", "control"],
     &["coordinates"],
+    &["wind"],
     &["motion"],
     &["scenario"],
     &["trajectory"],

@@ -9,7 +9,13 @@ pub use table::Table;
 
 use std::sync::Arc;
 
+use crate::interpolation::Hint;
 use crate::scalar::Scalar;
+
+/// Scale heights over which the density falls to e⁻³⁷ ≈ 10⁻¹⁶, so thin that an integrator may not notice it coming.
+const SENSIBLE_SCALE_HEIGHTS: f64 = 37.0;
+/// What stands for a scale height where there is no air, m.
+const VACUUM_SCALE_HEIGHT: f64 = 10e3;
 
 /// A model of the atmosphere, by the altitude along the radius vector; it turns with the planet.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,41 +57,70 @@ impl Atmosphere {
     /// The exponential atmosphere of the thesis.
     pub const EARTH_JAMESON: Self = Self::Exponential { surface_density: 1.547_93, scale_height: 6935.0 };
 
-    /// Density, kg/m³, at an altitude above the surface along the radius vector, m.
+    /// The altitudes, m, ascending, at which the formula changes: between them lie the stretches, of which the first, 0, has no lower
+    /// end, and the last no upper one.
+    pub fn boundaries(&self) -> &[f64] {
+        match self {
+            Self::Vacuum | Self::Exponential { .. } => &[],
+            Self::Us76 => &us76::BOUNDARIES,
+            Self::Layers(layers) => layers.boundaries(),
+            Self::Table(table) => table.range(),
+        }
+    }
+
+    /// Density, kg/m³, at an altitude above the surface along the radius vector, m, by the formula of a stretch between
+    /// [`boundaries`](Self::boundaries), which goes on beyond its ends.
     ///
     /// From 700 scale heights below the surface on, where hardly more than trial stages of the integrator come,
     /// the density grows no more: there it is e⁷⁰⁰ times its surface value, and further down no number would hold it.
     #[inline(always)]
-    pub fn density<S: Scalar>(&self, _: usize, altitude: S) -> S {
-        if let Self::Us76 = self { return Self::other(altitude) }
-        let (surface_density, scale_height) = match *self {
-            Self::Exponential { surface_density, scale_height } => (surface_density, scale_height),
-            _ => (0.0, 6935.0),
-        };
-        // Of a subnormal scale height the reciprocal would be infinite, and its product with no altitude no number.
-        let height = altitude * scale_height.recip().min(f64::MAX);
-        let clamped = S::select(height.less_than(-700.0), S::from(-700.0), height);
-        (-clamped).exp() * surface_density
+    pub fn density<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
+        match *self {
+            Self::Exponential { surface_density, scale_height } => falling(surface_density, altitude, scale_height),
+            _ => self.density_by_stretch(stretch, altitude, hint),
+        }
     }
 
+    /// The density of the models with stretches: apart, so that the flights of the exponential model do not carry its instructions.
     #[inline(never)]
-    fn other<S: Scalar>(altitude: S) -> S { us76::density(altitude) }
-    /// stub
+    fn density_by_stretch<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
+        match self {
+            Self::Vacuum => S::zero(),
+            Self::Us76 => us76::density_in(stretch, altitude),
+            Self::Layers(layers) => layers.density(stretch, altitude),
+            Self::Table(table) => table.density(stretch, altitude, hint),
+            Self::Exponential { surface_density, scale_height } => falling(*surface_density, altitude, *scale_height),
+        }
+    }
+
+    /// Density, kg/m³, and speed of sound, m/s, at an altitude, m, by the formulas of a stretch; of a model that has no temperature the
+    /// speed of sound is 1 m/s.
     #[inline(never)]
-    pub fn density_and_sound<S: Scalar>(&self, _: usize, altitude: S) -> (S, S) {
-        let sample = us76::sample(altitude);
-        (sample.density, sample.speed_of_sound.unwrap_or(S::zero()))
+    pub fn density_and_sound<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> (S, S) {
+        match self {
+            Self::Us76 => us76::density_and_sound_in(stretch, altitude),
+            Self::Table(table) => {
+                let sound = table.temperature(stretch, altitude, hint).map(us76::speed_of_sound);
+                (table.density(stretch, altitude, hint), sound.unwrap_or_else(S::one))
+            }
+            Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => {
+                (self.density(stretch, altitude, hint), S::one())
+            }
+        }
     }
 
-    /// stub
-    pub fn sample<S: Scalar>(&self, layer: usize, altitude: S) -> AtmosphereSample<S> {
-        match self { Self::Us76 => us76::sample(altitude),
-        _ => AtmosphereSample { density: self.density(layer, altitude), temperature: None, pressure: None, speed_of_sound: None } }
-    }
-
-    /// stub
-    pub fn boundaries(&self) -> &[f64] {
-        match self { Self::Us76 => &us76::BOUNDARIES, _ => &[] }
+    /// The air at an altitude, m, by the formulas of a stretch.
+    pub fn sample<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
+        match self {
+            Self::Us76 => us76::sample_in(stretch, altitude),
+            Self::Table(table) => table.sample(stretch, altitude, hint),
+            Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => AtmosphereSample {
+                density: self.density(stretch, altitude, hint),
+                temperature: None,
+                pressure: None,
+                speed_of_sound: None,
+            },
+        }
     }
 
     /// Whether the model has a temperature, and with it a speed of sound.
@@ -108,14 +143,32 @@ impl Atmosphere {
 
     /// The altitude, m, above which the air is so thin (e⁻³⁷ ≈ 10⁻¹⁶ of the surface's) that an integrator may not notice it coming.
     pub fn sensible_altitude(&self) -> f64 {
-        37.0 * self.scale_height()
-    }
-
-    /// The height, m, over which the density changes by e.
-    pub fn scale_height(&self) -> f64 {
-        match *self {
-            Self::Exponential { scale_height, .. } => scale_height,
-            _ => 6935.0,
+        match self {
+            Self::Vacuum => 0.0,
+            Self::Exponential { scale_height, .. } => SENSIBLE_SCALE_HEIGHTS * scale_height,
+            Self::Us76 => us76::SENSIBLE_ALTITUDE,
+            Self::Layers(layers) => layers.sensible_altitude(),
+            Self::Table(table) => table.sensible_altitude(),
         }
     }
+
+    /// The height, m, over which the density changes by e; the least where it differs.
+    pub fn scale_height(&self) -> f64 {
+        match self {
+            Self::Vacuum => VACUUM_SCALE_HEIGHT,
+            Self::Exponential { scale_height, .. } => *scale_height,
+            Self::Us76 => us76::LEAST_SCALE_HEIGHT,
+            Self::Layers(layers) => layers.scale_height(),
+            Self::Table(table) => table.scale_height(),
+        }
+    }
+}
+
+/// ρ e^(-h/H), kg/m³, up to e⁷⁰⁰ρ: so much air is at this height, m, over the place whose density is ρ.
+#[inline(always)]
+fn falling<S: Scalar>(density: f64, height: S, scale_height: f64) -> S {
+    // Of a subnormal scale height the reciprocal would be infinite, and its product with no height no number.
+    let height = height * scale_height.recip().min(f64::MAX);
+    let clamped = S::select(height.less_than(-700.0), S::from(-700.0), height);
+    (-clamped).exp() * density
 }

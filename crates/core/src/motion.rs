@@ -55,8 +55,7 @@ pub struct Forces<P = f64> {
 #[derive(Clone, Debug, Default)]
 struct Cells {
     wind: Hint,
-    mach: Hint,
-    angle_of_attack: Hint,
+    angle_of_attack_and_mach: [Hint; 2],
 }
 
 /// What all vehicles side by side have in common.
@@ -303,14 +302,14 @@ impl<P: Scalar> Forces<P> {
     /// The coefficients of the model, if they are not all in the parameters.
     #[inline(always)]
     fn coefficients<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Option<Coefficients<S>> {
+        let cells = &self.cells.angle_of_attack_and_mach;
         let [alpha, mach] = [Switch::TableAngleOfAttack, Switch::Mach].map(|switch| self.regime.of(switch));
         match &self.models.aerodynamics {
             _ if THESIS => None,
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => None,
-            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &self.cells.mach)),
+            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &cells[1])),
             Aerodynamics::AlphaMachTable(table) => {
-                let hints = [&self.cells.angle_of_attack, &self.cells.mach];
-                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.mach(), hints))
+                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.mach(), cells))
             }
         }
     }

@@ -52,7 +52,17 @@ pub trait Scalar:
     fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
 
     /// What a table holds for the value: a row of numbers without derivatives, each lane its own.
-    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K];
+    #[inline(always)]
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        let [row] = Self::pick_rows([self], |[value]| [row(value)]);
+        row
+    }
+
+    /// What a table holds for several values together: rows of numbers without derivatives, each lane its own.
+    fn pick_rows<const N: usize, const K: usize, const R: usize>(
+        at: [Self; N],
+        rows: impl Fn([f64; N]) -> [[f64; K]; R],
+    ) -> [[Self; K]; R];
 
     /// One over the number.
     #[must_use]
@@ -106,8 +116,11 @@ where
     }
 
     #[inline(always)]
-    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
-        row(self.re()).map(Self::from)
+    fn pick_rows<const N: usize, const K: usize, const R: usize>(
+        at: [Self; N],
+        rows: impl Fn([f64; N]) -> [[f64; K]; R],
+    ) -> [[Self; K]; R] {
+        rows(at.map(|number| number.re())).map(|row| row.map(Self::from))
     }
 
     #[inline(always)]

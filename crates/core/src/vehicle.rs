@@ -59,15 +59,22 @@ impl Aerodynamics {
             Self::MachTable(_) | Self::AlphaMachTable(_) => true,
         }
     }
+
+    /// Whether there is any lift.
+    pub fn has_lift(&self) -> bool {
+        match self {
+            Self::Constant { lift_coefficient, .. } => *lift_coefficient != 0.0,
+            Self::Ballistic { lift_to_drag, .. } => *lift_to_drag != 0.0,
+            Self::MachTable(table) => table.has_lift(),
+            Self::AlphaMachTable(table) => table.has_lift(),
+        }
+    }
 }
 
 impl Vehicle {
     /// Whether the vehicle has any lift.
     pub fn has_lift(&self) -> bool {
-        match self.aerodynamics {
-            Aerodynamics::Constant { lift_coefficient, .. } => lift_coefficient != 0.0 && self.reference_area > 0.0,
-            Aerodynamics::Ballistic { lift_to_drag, .. } => lift_to_drag != 0.0,
-            Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => self.reference_area > 0.0,
-        }
+        let without_area = matches!(self.aerodynamics, Aerodynamics::Ballistic { .. });
+        self.aerodynamics.has_lift() && (without_area || self.reference_area > 0.0)
     }
 }

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::interpolation::{self, TableError};
+use crate::interpolation::{Cubics, Hint, TableError};
+use crate::scalar::Scalar;
 
 /// The velocity of the air relative to the rotating planet, along east and north of the local horizontal of
 /// [`FlightPath`](crate::coordinates::FlightPath).
@@ -21,10 +22,11 @@ pub enum Wind {
     Table(Arc<WindTable>),
 }
 
-/// Wind by altitude along the radius vector.
+/// Wind by altitude along the radius vector; below the first altitude and above the last it stays as it is there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindTable {
-    range: [f64; 2],
+    /// To the east and to the north, m/s.
+    velocity: Cubics<2>,
 }
 
 impl WindTable {
@@ -33,19 +35,17 @@ impl WindTable {
     /// # Errors
     /// When these are not a table.
     pub fn new(altitude: &[f64], east: &[f64], north: &[f64]) -> Result<Self, TableError> {
-        interpolation::check(altitude, &[east, north])?;
-        Ok(Self { range: [altitude[0], altitude[altitude.len() - 1]] })
+        Ok(Self { velocity: Cubics::new(altitude, [east, north])? })
     }
 
     /// Its lowest and highest altitude, m.
     pub fn range(&self) -> &[f64; 2] {
-        &self.range
+        self.velocity.range()
     }
-}
 
-impl WindTable {
-    /// stub
-    pub fn velocity<S: crate::scalar::Scalar>(&self, _: usize, _: S, _: &interpolation::Hint) -> [S; 2] {
-        [S::zero(), S::zero()]
+    /// The velocity to the east and to the north, m/s, at an altitude, m, by the formula of a stretch: 0 below the table, 1 inside, 2 above.
+    #[inline(always)]
+    pub fn velocity<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> [S; 2] {
+        self.velocity.at(stretch, altitude, hint)
     }
 }

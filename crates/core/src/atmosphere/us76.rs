@@ -19,6 +19,12 @@
 //! - Down from half the Earth's radius and up from 10⁸ m, where only trial stages of an integrator come, the air stays as it is there:
 //!   so that everything is a finite positive number everywhere.
 //!
+//! # Stretches
+//!
+//! An integrator takes the formula of one stretch between [`BOUNDARIES`] at a time, and continues it where a trial stage looks over its
+//! end: the layer of mixed air keeps its lapse rate, until the temperature is a tenth of that at its base. The density above 86 km
+//! has one formula for all stretches; below 86 km, where a trial stage may bring it, its logarithm goes on in a straight line.
+//!
 //! # Reference
 //! U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562, U.S. Government Printing Office, Washington, D.C., October 1976: "the standard" here.
 //! Its equations and tables are cited by number.
@@ -47,6 +53,14 @@ const TEMPERATURE_AT_86_KM: f64 = 186.8673;
 const MIXED_TOP: f64 = 86e3;
 /// Z₁₂, where the standard ends, m.
 const TOP: f64 = 1000e3;
+/// Above it the density is less than 3e-15 of that at sea level, m, and almost all of it hydrogen and helium.
+pub(super) const SENSIBLE_ALTITUDE: f64 = TOP;
+/// From here on the air stays as it is, m.
+const HIGHEST: f64 = 1e8;
+/// Down from here it stays as it is, m, where a formula from higher up is continued.
+const LOWEST_OF_TRIALS: f64 = -1e6;
+/// The height, m, over which the density falls by e at 110 km, where the temperature begins to rise; it is greater elsewhere.
+pub(super) const LEAST_SCALE_HEIGHT: f64 = 5424.0;
 
 /// The geometric altitudes, m, upward, at which the density or one of its first three derivatives jumps.
 ///
@@ -72,73 +86,84 @@ pub const BOUNDARIES: [f64; 16] = [
     TOP,
 ];
 
+/// How many of the [`BOUNDARIES`] lie at or below a geometric altitude, m: the stretch in which it is.
+#[inline(always)]
+pub fn stretch<S: Scalar<Mask = bool>>(altitude: S) -> usize {
+    BOUNDARIES.iter().filter(|boundary| !altitude.less_than(**boundary)).count()
+}
+
 /// Density, kg/m³, at a geometric altitude, m.
 #[inline(always)]
-pub fn density<S: Scalar>(altitude: S) -> S {
-    Place::of(altitude).density()
+pub fn density<S: Scalar<Mask = bool>>(altitude: S) -> S {
+    density_in(stretch(altitude), altitude)
 }
 
 /// The air at a geometric altitude, m.
+#[inline(always)]
+pub fn sample<S: Scalar<Mask = bool>>(altitude: S) -> AtmosphereSample<S> {
+    sample_in(stretch(altitude), altitude)
+}
+
+/// Density, kg/m³, at a geometric altitude, m, by the formula of a stretch.
+#[inline(always)]
+pub fn density_in<S: Scalar>(stretch: usize, altitude: S) -> S {
+    let altitude = within_bounds(stretch, altitude);
+    match TABLE.layers.get(stretch) {
+        Some(layer) => layer.density(&layer.place(altitude)),
+        None => TABLE.density_of_gases(altitude),
+    }
+}
+
+/// Density, kg/m³, and speed of sound, m/s, at a geometric altitude, m, by the formulas of a stretch.
+#[inline(always)]
+pub fn density_and_sound_in<S: Scalar>(stretch: usize, altitude: S) -> (S, S) {
+    let altitude = within_bounds(stretch, altitude);
+    match TABLE.layers.get(stretch) {
+        Some(layer) => {
+            let place = layer.place(altitude);
+            (layer.density(&place), speed_of_sound(layer.molecular_scale_temperature(&place)))
+        }
+        None => (TABLE.density_of_gases(altitude), speed_of_sound(thermosphere(stretch, altitude))),
+    }
+}
+
+/// The air at a geometric altitude, m, by the formulas of a stretch.
 ///
 /// ```text
 /// p = ρ R* T_M/M₀,  T_M = T M₀/M                   (42, 22)
 /// C_s = √(γ R* T_M/M₀)                             (50), above 86 km with T in place of T_M
 /// ```
 #[inline(always)]
-pub fn sample<S: Scalar>(altitude: S) -> AtmosphereSample<S> {
-    let place = Place::of(altitude);
-    let density = place.density();
-    let molecular_scale_temperature = place.molecular_scale_temperature();
-    let mixed = place.altitude.less_than(MIXED_TOP);
-    let in_mixed_air = molecular_scale_temperature * weight_ratio(place.altitude);
-    let temperature = S::select(mixed, in_mixed_air, thermosphere(place.altitude));
-    let of_sound = S::select(mixed, molecular_scale_temperature, temperature);
+pub fn sample_in<S: Scalar>(stretch: usize, altitude: S) -> AtmosphereSample<S> {
+    let (density, speed_of_sound) = density_and_sound_in(stretch, altitude);
+    let altitude = within_bounds(stretch, altitude);
+    let (molecular_scale_temperature, temperature) = match TABLE.layers.get(stretch) {
+        Some(layer) => {
+            let molecular_scale_temperature = layer.molecular_scale_temperature(&layer.place(altitude));
+            (molecular_scale_temperature, molecular_scale_temperature * weight_ratio(altitude))
+        }
+        None => (TABLE.molecular_scale_temperature_of_gases(altitude), thermosphere(stretch, altitude)),
+    };
     AtmosphereSample {
         density,
         temperature: Some(temperature),
         pressure: Some(density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT)),
-        speed_of_sound: Some((of_sound * (HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT)).sqrt()),
+        speed_of_sound: Some(speed_of_sound),
     }
 }
 
-/// An altitude, and its abscissa in the table.
-struct Place<S> {
-    /// Z, m, within the bounds of the model.
-    altitude: S,
-    /// H below 86 km, Z above, m.
-    abscissa: S,
-}
-
-impl<S: Scalar> Place<S> {
-    #[inline(always)]
-    fn of(altitude: S) -> Self {
-        let (lowest, highest) = (-0.5 * EARTH_RADIUS, 1e8);
-        let altitude = S::select(altitude.less_than(lowest), S::from(lowest), altitude);
-        let altitude = S::select(altitude.less_than(highest), altitude, S::from(highest));
-        Self { altitude, abscissa: S::select(altitude.less_than(MIXED_TOP), geopotential(altitude), altitude) }
-    }
-
-    #[inline(always)]
-    fn density(&self) -> S {
-        let table = &*TABLE;
-        let [base, power, growth, c0, c1, c2, c3, c4, c5] = self.abscissa.pick(|abscissa| table.log_density(abscissa));
-        let x = self.abscissa - base;
-        ((growth * x + 1.0).ln() * power + polynomial(x, [c0, c1, c2, c3, c4, c5])).exp()
-    }
-
-    #[inline(always)]
-    fn molecular_scale_temperature(&self) -> S {
-        let table = &*TABLE;
-        let [base, c0, c1, c2, c3, c4, c5] = self.abscissa.pick(|abscissa| table.temperature(abscissa));
-        polynomial(self.abscissa - base, [c0, c1, c2, c3, c4, c5])
-    }
-}
-
-/// c₀ + c₁x + … + c₅x⁵, in pairs, which do not wait for each other.
+/// The speed of sound in mixed air of a temperature, K, in m/s (equation 50).
 #[inline(always)]
-fn polynomial<S: Scalar>(x: S, [c0, c1, c2, c3, c4, c5]: [S; 6]) -> S {
-    let square = x * x;
-    (c5 * x + c4) * (square * square) + ((c3 * x + c2) * square + (c1 * x + c0))
+pub(super) fn speed_of_sound<S: Scalar>(temperature: S) -> S {
+    (temperature * (HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT)).sqrt()
+}
+
+/// The altitude, m, or the nearest at which the formulas of a stretch are still used.
+#[inline(always)]
+fn within_bounds<S: Scalar>(stretch: usize, altitude: S) -> S {
+    let lowest = if stretch == 0 { -0.5 * EARTH_RADIUS } else { LOWEST_OF_TRIALS };
+    let altitude = S::select(altitude.less_than(lowest), S::from(lowest), altitude);
+    S::select(altitude.less_than(HIGHEST), altitude, S::from(HIGHEST))
 }
 
 /// The geopotential altitude of a geometric one, m (equation 18).
@@ -169,7 +194,7 @@ fn weight_ratio<S: Scalar>(altitude: S) -> S {
     S::select(altitude.less_than(FIRST), S::one(), (altitude - base) * slope + ratio)
 }
 
-/// The kinetic temperature above 86 km, K.
+/// The kinetic temperature above 86 km, K, by the formula of a stretch.
 ///
 /// ```text
 /// T = T_c + A √(1 - ((Z - Z₈)/a)²)                                  to 110 km, constant below Z₈ = 91 km   (25, 27)
@@ -179,15 +204,25 @@ fn weight_ratio<S: Scalar>(altitude: S) -> S {
 ///
 /// `T_c`, A and a are those that join the ellipse to its neighbours with its slope (appendix B, equations 5, 8 and 9), to all
 /// digits: the printed 263.1905 K, -76.3232 K and 19.9429 km would step the density at 110 km by 1e-6.
+/// Above 110 km, where the ellipse ends soon, its tangent continues it; below 86 km nothing gets colder than 100 K.
 #[inline(always)]
-fn thermosphere<S: Scalar>(altitude: S) -> S {
+fn thermosphere<S: Scalar>(stretch: usize, altitude: S) -> S {
     const CENTRE: f64 = 263.190_480_022_031_5;
     const WIDTH: f64 = 19_942.874_919_000_1;
-    let into_ellipse = S::select(altitude.less_than(91e3), S::zero(), altitude - 91e3) * (1.0 / WIDTH);
-    let ellipse = (-into_ellipse * into_ellipse + 1.0).sqrt() * (TEMPERATURE_AT_86_KM - CENTRE) + CENTRE;
-    let line = (altitude - 110e3) * 0.012 + 240.0;
-    let xi = (altitude - 120e3) * (altitude + EARTH_RADIUS).recip() * (EARTH_RADIUS + 120e3);
-    let exponential = (xi * -0.018_75e-3).exp() * -640.0 + 1000.0;
-    let above_110 = S::select(altitude.less_than(120e3), line, exponential);
-    S::select(altitude.less_than(110e3), ellipse, above_110)
+    const LAPSE: f64 = 0.012;
+    const COLDEST: f64 = 100.0;
+    let temperature = match stretch {
+        ..=11 => {
+            let on_ellipse = S::select(altitude.less_than(110e3), altitude, S::from(110e3));
+            let into_ellipse = S::select(on_ellipse.less_than(91e3), S::zero(), on_ellipse - 91e3) * (1.0 / WIDTH);
+            let ellipse = (-into_ellipse * into_ellipse + 1.0).sqrt() * (TEMPERATURE_AT_86_KM - CENTRE) + CENTRE;
+            ellipse + (altitude - on_ellipse) * LAPSE
+        }
+        12 => (altitude - 110e3) * LAPSE + 240.0,
+        _ => {
+            let xi = (altitude - 120e3) * (altitude + EARTH_RADIUS).recip() * (EARTH_RADIUS + 120e3);
+            (xi * -0.018_75e-3).exp() * -640.0 + 1000.0
+        }
+    };
+    S::select(temperature.less_than(COLDEST), S::from(COLDEST), temperature)
 }

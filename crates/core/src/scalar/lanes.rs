@@ -121,9 +121,12 @@ impl<const L: usize> Scalar for Lanes<L> {
     }
 
     #[inline(always)]
-    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
-        let rows = self.0.map(row);
-        from_fn(|k| Self(from_fn(|lane| rows[lane][k])))
+    fn pick_rows<const N: usize, const K: usize, const R: usize>(
+        at: [Self; N],
+        rows: impl Fn([f64; N]) -> [[f64; K]; R],
+    ) -> [[Self; K]; R] {
+        let picked: [_; L] = from_fn(|lane| rows(at.map(|number| number.0[lane])));
+        from_fn(|row| from_fn(|k| Self(from_fn(|lane| picked[lane][row][k]))))
     }
 
     #[inline(always)]

@@ -1,12 +1,15 @@
 //! Coefficients by angle of attack and Mach number.
 
-use crate::interpolation::{self, TableError};
+use super::Coefficients;
+use crate::interpolation::{Hint, Surfaces, TableError};
+use crate::scalar::Scalar;
 
-/// Lift and drag coefficients by angle of attack and Mach number.
+/// Lift and drag coefficients by angle of attack and Mach number; outside the table they are those of its nearest edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlphaMachTable {
-    angle_of_attack_range: [f64; 2],
-    mach_range: [f64; 2],
+    /// `C_L` and `C_D`.
+    coefficients: Surfaces,
+    has_lift: bool,
 }
 
 impl AlphaMachTable {
@@ -21,30 +24,39 @@ impl AlphaMachTable {
         lift_coefficient: &[Vec<f64>],
         drag_coefficient: &[Vec<f64>],
     ) -> Result<Self, TableError> {
-        interpolation::check(angle_of_attack, &[])?;
-        for row in lift_coefficient.iter().chain(drag_coefficient) {
-            interpolation::check(mach, &[row])?;
+        let coefficients = Surfaces::new(angle_of_attack, mach, [lift_coefficient, drag_coefficient])?;
+        match drag_coefficient.iter().flatten().position(|drag| *drag < 0.0) {
+            Some(index) => Err(TableError::OutOfBounds { index }),
+            None => Ok(Self { coefficients, has_lift: lift_coefficient.iter().flatten().any(|lift| *lift != 0.0) }),
         }
-        Ok(Self {
-            angle_of_attack_range: [angle_of_attack[0], angle_of_attack[angle_of_attack.len() - 1]],
-            mach_range: [mach[0], mach[mach.len() - 1]],
-        })
     }
 
     /// Its least and greatest angle of attack, rad.
     pub fn angle_of_attack_range(&self) -> &[f64; 2] {
-        &self.angle_of_attack_range
+        self.coefficients.ranges()[0]
     }
 
     /// Its least and greatest Mach number.
     pub fn mach_range(&self) -> &[f64; 2] {
-        &self.mach_range
+        self.coefficients.ranges()[1]
     }
-}
 
-impl AlphaMachTable {
-    /// stub
-    pub fn coefficients<S: crate::scalar::Scalar>(&self, _: [usize; 2], _: S, _: S, _: [&interpolation::Hint; 2]) -> super::Coefficients<S> {
-        super::Coefficients { lift: S::zero(), drag: S::zero() }
+    /// Whether there is any lift.
+    pub fn has_lift(&self) -> bool {
+        self.has_lift
+    }
+
+    /// The coefficients at an angle of attack, rad, and a Mach number, by the formulas of a stretch of each: 0 below the table, 1 inside,
+    /// 2 above.
+    #[inline(always)]
+    pub fn coefficients<S: Scalar>(
+        &self,
+        stretches: [usize; 2],
+        angle_of_attack: S,
+        mach: S,
+        hints: &[Hint; 2],
+    ) -> Coefficients<S> {
+        let [lift, drag] = self.coefficients.at(stretches, [angle_of_attack, mach], hints);
+        Coefficients { lift, drag }
     }
 }

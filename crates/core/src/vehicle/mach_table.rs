@@ -1,11 +1,15 @@
 //! Coefficients by Mach number.
 
-use crate::interpolation::{self, TableError};
+use super::Coefficients;
+use crate::interpolation::{Cubics, Hint, TableError};
+use crate::scalar::Scalar;
 
-/// Lift and drag coefficients by Mach number.
+/// Lift and drag coefficients by Mach number; below the first and above the last they stay as they are there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachTable {
-    range: [f64; 2],
+    /// `C_L` and `C_D`.
+    coefficients: Cubics<2>,
+    has_lift: bool,
 }
 
 impl MachTable {
@@ -14,19 +18,27 @@ impl MachTable {
     /// # Errors
     /// When these are not a table.
     pub fn new(mach: &[f64], lift_coefficient: &[f64], drag_coefficient: &[f64]) -> Result<Self, TableError> {
-        interpolation::check(mach, &[lift_coefficient, drag_coefficient])?;
-        Ok(Self { range: [mach[0], mach[mach.len() - 1]] })
+        let coefficients = Cubics::new(mach, [lift_coefficient, drag_coefficient])?;
+        match drag_coefficient.iter().position(|drag| *drag < 0.0) {
+            Some(index) => Err(TableError::OutOfBounds { index }),
+            None => Ok(Self { coefficients, has_lift: lift_coefficient.iter().any(|lift| *lift != 0.0) }),
+        }
     }
 
     /// Its least and greatest Mach number.
     pub fn range(&self) -> &[f64; 2] {
-        &self.range
+        self.coefficients.range()
     }
-}
 
-impl MachTable {
-    /// stub
-    pub fn coefficients<S: crate::scalar::Scalar>(&self, _: usize, _: S, _: &interpolation::Hint) -> super::Coefficients<S> {
-        super::Coefficients { lift: S::zero(), drag: S::zero() }
+    /// Whether there is any lift.
+    pub fn has_lift(&self) -> bool {
+        self.has_lift
+    }
+
+    /// The coefficients at a Mach number, by the formula of a stretch: 0 below the table, 1 inside, 2 above.
+    #[inline(always)]
+    pub fn coefficients<S: Scalar>(&self, stretch: usize, mach: S, hint: &Hint) -> Coefficients<S> {
+        let [lift, drag] = self.coefficients.at(stretch, mach, hint);
+        Coefficients { lift, drag }
     }
 }

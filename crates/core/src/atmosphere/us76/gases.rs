@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use num_dual::Dual64;
 
-use super::{EARTH_RADIUS, GAS_CONSTANT, GRAVITY, MOLECULAR_WEIGHT, TEMPERATURE_AT_86_KM, thermosphere};
+use super::{EARTH_RADIUS, GAS_CONSTANT, GRAVITY, MOLECULAR_WEIGHT, TEMPERATURE_AT_86_KM, stretch, thermosphere};
 
 /// `N_A`, 1/kmol (Table 2).
 const AVOGADRO: f64 = 6.022_169e26;
@@ -63,7 +63,7 @@ struct Level {
 
 impl Level {
     fn at(altitude: f64) -> Self {
-        let Dual64 { re: temperature, eps: lapse, .. } = thermosphere(Dual64::new(altitude, 1.0));
+        let Dual64 { re: temperature, eps: lapse, .. } = thermosphere(stretch(altitude), Dual64::new(altitude, 1.0));
         let weight = gravity(altitude) / (GAS_CONSTANT * temperature);
         Self { temperature, lapse, weight, mixed: altitude < 100e3 }
     }

@@ -1,21 +1,23 @@
-//! ln ρ and the molecular-scale temperature by altitude, in rows.
+//! ln ρ and the molecular-scale temperature by altitude, in layers and cells.
 
 use std::array::from_fn;
 use std::sync::LazyLock;
 
 use super::gases::{self, Integrals};
 use super::{GAS_CONSTANT, GRAVITY, MIXED_TOP, MOLECULAR_WEIGHT, TOP, geopotential};
+use crate::scalar::Scalar;
 
 /// H, m, and `dT_M/dH`, K/m, from there on (Table 4).
 const LAYERS: [(f64, f64); 7] =
     [(0.0, -0.0065), (11e3, 0.0), (20e3, 0.001), (32e3, 0.0028), (47e3, 0.0), (51e3, -0.0028), (71e3, -0.002)];
 /// T₀, K, and P₀, Pa (Table 2).
 const SEA_LEVEL: [f64; 2] = [288.15, 101_325.0];
+/// `T_M/T_b` under which no layer goes, where a trial stage looks far over its end.
+const COLDEST: f64 = 0.1;
 
 /// From the first altitude on so many cells of this length, m: every boundary of the gases is a knot.
 const CELLS: [(f64, usize, f64); 2] = [(MIXED_TOP, 256, 250.0), (150e3, 170, 5000.0)];
 const KNOTS: usize = CELLS[0].1 + CELLS[1].1;
-const ROWS: usize = LAYERS.len() + KNOTS + 1;
 
 /// Steps of the method of Runge and Kutta in half a cell: four times as many change the density by 2e-11.
 const STEPS: usize = 5;
@@ -25,47 +27,115 @@ const INSIDE: f64 = 1e-6;
 /// The table; its integrals are taken when it is first used.
 pub(super) static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// Rows of layers below 86 km, of cells above, and the last from 1000 km on.
-pub(super) struct Table(Vec<Row>);
+/// The layers of mixed air, and the cells above 86 km.
+pub(super) struct Table {
+    pub(super) layers: [Layer; LAYERS.len()],
+    /// Below 86 km, as far as a trial stage brings the gases there; in the cells; above 1000 km.
+    cells: Vec<Cell>,
+}
 
-struct Row {
-    /// x₀, m, and of x - x₀ the parts of ln ρ: power a and growth g of a ln(1 + g x), and the coefficients of a polynomial.
-    log_density: [f64; 9],
-    /// x₀, m, and the coefficients of the molecular-scale temperature, K.
+/// A layer of mixed air; the logarithm of its density is `ln ρ_b + power ln(T_M/T_b) + decay (H - H_b)`.
+pub(super) struct Layer {
+    /// `H_b`, m.
+    base: f64,
+    /// `T_b`, K.
+    temperature: f64,
+    /// `dT_M/dH` over `T_b`, 1/m.
+    growth: f64,
+    power: f64,
+    /// `ln ρ_b`.
+    log_density: f64,
+    /// 1/m.
+    decay: f64,
+}
+
+/// Where in a layer something is.
+pub(super) struct Place<S> {
+    /// H - `H_b`, m.
+    height: S,
+    /// `T_M/T_b`.
+    warmth: S,
+}
+
+/// x₀, m, and the coefficients in x - x₀ of two polynomials.
+struct Cell {
+    log_density: [f64; 7],
+    /// The molecular-scale temperature, K.
     temperature: [f64; 7],
 }
 
-impl Row {
-    /// Polynomials alone.
-    fn cell(base: f64, log_density: [f64; 6], temperature: [f64; 6]) -> Self {
+impl Layer {
+    /// The place of a geometric altitude, m, as if the layer had no end.
+    #[inline(always)]
+    pub(super) fn place<S: Scalar>(&self, altitude: S) -> Place<S> {
+        let height = geopotential(altitude) - self.base;
+        let warmth = height * self.growth + 1.0;
+        Place { height, warmth: S::select(warmth.less_than(COLDEST), S::from(COLDEST), warmth) }
+    }
+
+    #[inline(always)]
+    pub(super) fn density<S: Scalar>(&self, place: &Place<S>) -> S {
+        let line = place.height * self.decay + self.log_density;
+        if self.power == 0.0 { line.exp() } else { (place.warmth.ln() * self.power + line).exp() }
+    }
+
+    /// `T_M`, K.
+    #[inline(always)]
+    pub(super) fn molecular_scale_temperature<S: Scalar>(&self, place: &Place<S>) -> S {
+        place.warmth * self.temperature
+    }
+}
+
+impl Cell {
+    fn new(base: f64, log_density: [f64; 6], temperature: [f64; 6]) -> Self {
         let [c0, c1, c2, c3, c4, c5] = log_density;
         let [t0, t1, t2, t3, t4, t5] = temperature;
-        Self { log_density: [base, 0.0, 0.0, c0, c1, c2, c3, c4, c5], temperature: [base, t0, t1, t2, t3, t4, t5] }
+        Self { log_density: [base, c0, c1, c2, c3, c4, c5], temperature: [base, t0, t1, t2, t3, t4, t5] }
     }
 }
 
 impl Table {
-    /// The numbers for ln ρ at an abscissa, m.
+    /// The density above 86 km, kg/m³.
     #[inline(always)]
-    pub(super) fn log_density(&self, abscissa: f64) -> [f64; 9] {
-        self.0[row(abscissa)].log_density
+    pub(super) fn density_of_gases<S: Scalar>(&self, altitude: S) -> S {
+        let [base, c0, c1, c2, c3, c4, c5] = altitude.pick(|altitude| self.cell(altitude).log_density);
+        polynomial(altitude - base, [c0, c1, c2, c3, c4, c5]).exp()
     }
 
-    /// The numbers for the molecular-scale temperature at an abscissa, m.
+    /// `T_M` above 86 km, K.
     #[inline(always)]
-    pub(super) fn temperature(&self, abscissa: f64) -> [f64; 7] {
-        self.0[row(abscissa)].temperature
+    pub(super) fn molecular_scale_temperature_of_gases<S: Scalar>(&self, altitude: S) -> S {
+        let [base, c0, c1, c2, c3, c4, c5] = altitude.pick(|altitude| self.cell(altitude).temperature);
+        polynomial(altitude - base, [c0, c1, c2, c3, c4, c5])
+    }
+
+    #[inline(always)]
+    fn cell(&self, altitude: f64) -> &Cell {
+        let [(lower, lower_cells, lower_length), (upper, _, upper_length)] = CELLS;
+        let number = if altitude < lower {
+            0
+        } else if altitude < upper {
+            1 + cell(altitude, lower, lower_length)
+        } else {
+            1 + lower_cells + cell(altitude, upper, upper_length)
+        };
+        &self.cells[number.min(KNOTS + 1)]
     }
 
     fn new() -> Self {
-        let mut rows = Vec::with_capacity(ROWS);
-        let log_density = add_layers(&mut rows);
-        add_cells(&mut rows, log_density);
-        Self(rows)
+        let (layers, log_density) = layers();
+        Self { layers, cells: cells(log_density) }
     }
 }
 
-/// The mixed air; returns ln ρ at 86 km.
+/// c₀ + c₁x + … + c₅x⁵, in pairs, which do not wait for each other.
+#[inline(always)]
+fn polynomial<S: Scalar>(x: S, [c0, c1, c2, c3, c4, c5]: [S; 6]) -> S {
+    let square = x * x;
+    (c5 * x + c4) * (square * square) + ((c3 * x + c2) * square + (c1 * x + c0))
+}
+
+/// The mixed air, and ln ρ at 86 km.
 ///
 /// ```text
 /// T_M = T_b + L (H - H_b)                                     (23)
@@ -73,28 +143,28 @@ impl Table {
 /// P = P_b exp(-g₀M₀ (H - H_b)/(R*T_b)),  L = 0                (33b)
 /// ρ = P M₀/(R* T_M)                                           (42)
 /// ```
-fn add_layers(rows: &mut Vec<Row>) -> f64 {
+fn layers() -> ([Layer; LAYERS.len()], f64) {
     let [mut temperature, pressure] = SEA_LEVEL;
     let mut log_density = (pressure * MOLECULAR_WEIGHT / (GAS_CONSTANT * temperature)).ln();
-    let tops = LAYERS.iter().skip(1).map(|(base, _)| *base).chain([geopotential(MIXED_TOP)]);
-    for ((base, lapse), top) in LAYERS.into_iter().zip(tops) {
+    let layers = from_fn(|number| {
+        let (base, lapse) = LAYERS[number];
+        let top = LAYERS.get(number + 1).map_or(geopotential(MIXED_TOP), |(base, _)| *base);
         let column = -GRAVITY * MOLECULAR_WEIGHT / GAS_CONSTANT;
         let [power, decay] = if lapse == 0.0 { [0.0, column / temperature] } else { [column / lapse - 1.0, 0.0] };
         let growth = lapse / temperature;
-        rows.push(Row {
-            log_density: [base, power, growth, log_density, decay, 0.0, 0.0, 0.0, 0.0],
-            temperature: [base, temperature, lapse, 0.0, 0.0, 0.0, 0.0],
-        });
+        let layer = Layer { base, temperature, growth, power, log_density, decay };
         log_density += power * (growth * (top - base)).ln_1p() + decay * (top - base);
         temperature += lapse * (top - base);
-    }
-    log_density
+        layer
+    });
+    (layers, log_density)
 }
 
 /// The gases.
 ///
 /// At 86 km their number densities give 8e-6 more density than the closed forms below. All are made smaller by that.
-fn add_cells(rows: &mut Vec<Row>, log_density_at_86_km: f64) {
+fn cells(log_density_at_86_km: f64) -> Vec<Cell> {
+    let mut cells = Vec::with_capacity(KNOTS + 2);
     let integrals = integrals();
     let at_500_km = integrals[2 * (CELLS[0].1 + cell(500e3, CELLS[1].0, CELLS[1].2))];
     let at_86_km = gases::point(MIXED_TOP, &integrals[0], &at_500_km);
@@ -108,24 +178,17 @@ fn add_cells(rows: &mut Vec<Row>, log_density_at_86_km: f64) {
         });
         let log_density = hermite(length, points.each_ref().map(|point| point.log_density));
         let temperature = hermite(length, points.each_ref().map(|point| point.molecular_scale_temperature));
-        rows.push(Row::cell(left, log_density, temperature));
+        if knot == 0 {
+            let tangent = [log_density[0], log_density[1], 0.0, 0.0, 0.0, 0.0];
+            cells.push(Cell::new(left, tangent, [temperature[0], 0.0, 0.0, 0.0, 0.0, 0.0]));
+        }
+        cells.push(Cell::new(left, log_density, temperature));
     }
     let top = gases::point(TOP, &integrals[2 * KNOTS], &at_500_km);
     let [log_density, slope] = top.log_density;
     let [temperature, _] = top.molecular_scale_temperature;
-    rows.push(Row::cell(TOP, [log_density + join, slope, 0.0, 0.0, 0.0, 0.0], [temperature, 0.0, 0.0, 0.0, 0.0, 0.0]));
-}
-
-#[inline(always)]
-fn row(abscissa: f64) -> usize {
-    let [(lower, lower_cells, lower_length), (upper, _, upper_length)] = CELLS;
-    if abscissa < lower {
-        LAYERS.iter().skip(1).filter(|(base, _)| abscissa >= *base).count()
-    } else if abscissa < upper {
-        LAYERS.len() + cell(abscissa, lower, lower_length)
-    } else {
-        (LAYERS.len() + lower_cells + cell(abscissa, upper, upper_length)).min(ROWS - 1)
-    }
+    cells.push(Cell::new(TOP, [log_density + join, slope, 0.0, 0.0, 0.0, 0.0], [temperature, 0.0, 0.0, 0.0, 0.0, 0.0]));
+    cells
 }
 
 /// The number of the cell in which an abscissa lies, of cells of equal length; 0 below the first.
