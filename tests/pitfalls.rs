@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use reentry::interpolation::Hint;
 use reentry::motion::Singularity;
 use reentry::scenario::Fault;
 use reentry::simulate::SimulationError;
@@ -69,10 +70,10 @@ fn the_state_at_the_impact_is_more_accurate_than_the_dense_output() {
 #[test]
 fn the_density_is_finite_at_every_altitude() {
     for altitude in [0.0, -1e5, -5e6, -1e9, -1e300, 1e300] {
-        let density: f64 = Atmosphere::EARTH_JAMESON.density(0, altitude);
+        let density: f64 = Atmosphere::EARTH_JAMESON.density(0, altitude, &Hint::default());
         assert!(density.is_finite(), "{density} at {altitude}");
         // Of the least scale height there is, whose reciprocal no number holds.
-        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(0, altitude);
+        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(0, altitude, &Hint::default());
         assert!(thin.is_finite(), "{thin} at {altitude}");
     }
     // A heavy body at great speed straight down: its first trial steps end far below the ground.

@@ -54,6 +54,7 @@ pub struct Forces<P = f64> {
 /// Where the tables were last looked at.
 #[derive(Clone, Debug, Default)]
 struct Cells {
+    atmosphere: Hint,
     wind: Hint,
     angle_of_attack_and_mach: [Hint; 2],
 }
@@ -258,7 +259,7 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn flow_of<const THESIS: bool, S: Over<P>>(&self, altitude: S, directions: Directions<S>, ground_speed: S) -> Flow<S> {
         let density_and_mach = (!THESIS && self.by_mach).then(|| {
-            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), altitude);
+            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
             (density, directions.speed * sound.recip())
         });
         Flow { altitude, directions, ground_speed, density_and_mach }
@@ -280,7 +281,7 @@ impl<P: Scalar> Forces<P> {
     fn density<const THESIS: bool, S: Over<P>>(&self, flow: &Flow<S>) -> S {
         let of_model = match flow.density_and_mach {
             Some((density, _)) => density,
-            None => self.models.atmosphere.density(self.regime.of(Switch::Atmosphere), flow.altitude),
+            None => self.models.atmosphere.density(self.regime.of(Switch::Atmosphere), flow.altitude, &self.cells.atmosphere),
         };
         of_model * self.parameters.density
     }
@@ -441,7 +442,7 @@ impl Forces {
         let PlanetFixed { position, velocity } = state;
         let mut flow = self.flow::<false, _>(state);
         if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
-            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), flow.altitude);
+            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), flow.altitude, &self.cells.atmosphere);
             flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
         }
         let Directions { radius, speed, up, ahead, cos_gamma, .. } = &flow.directions;
@@ -498,7 +499,7 @@ impl Forces {
     /// The air in a state, as far as the atmosphere knows it.
     pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
         let altitude = self.models.planet.shape.altitude(&state.position);
-        let sample = self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude);
+        let sample = self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
         // By the law of gases, denser air of the same temperature presses harder.
         let factor = self.parameters.density;
         AtmosphereSample {
