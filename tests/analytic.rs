@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use reentry::analytic::{Comparison, End, Fault, Prediction, Solution, Theory};
 use reentry::trajectory::{FlightPoint, Sampling, Termination};
-use reentry::{Control, Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Stop, Vehicle};
+use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Stop, Vehicle};
 
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, random_entry, target_2, vehicle};
@@ -273,8 +273,9 @@ fn loh_becomes_first_order_as_the_planet_grows() {
             heading: 0.0,
         };
         let case = Case { planet, initial_state: entry.to_planet_fixed(), ..table(4, LISTING) };
-        let angle =
-            |solution| theory(solution, case.clone()).prediction(&at(&case, 0.2, speed)).unwrap().flight_path_angle.unwrap();
+        let angle = |solution| {
+            theory(solution, case.clone()).prediction(&at(&case, 0.2, speed)).unwrap().flight_path_angle.unwrap()
+        };
         angle(Solution::Loh) - angle(Solution::SteepGlide)
     };
     let [small, large] = [1.0, 1000.0].map(difference);
@@ -399,7 +400,11 @@ fn theories_that_do_not_apply_are_refused_with_every_fault() {
             assert!(matches!(error.0[..], [Fault::Lift { .. }, Fault::NoDescent { .. }]), "{error}");
         } else {
             refused(solution, with(case.clone(), vehicle(50.0, 0.1, 0.0, 0.1)), &[Fault::NoLift]);
-            refused(solution, with(case.clone(), vehicle(50.0, 0.0, 0.0, 0.0)), &[Fault::NoLift, Fault::NoDrag, Fault::NoArea]);
+            refused(
+                solution,
+                with(case.clone(), vehicle(50.0, 0.0, 0.0, 0.0)),
+                &[Fault::NoLift, Fault::NoDrag, Fault::NoArea],
+            );
         }
         let descends = !matches!(solution, Solution::ShallowGlide | Solution::Loh);
         let climbs = Theory::new(solution, &Scenario::new(rising(case)).unwrap());

@@ -1,8 +1,10 @@
 //! One physics for every number: lanes give the digits of `f64`, dual numbers its derivatives.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
+use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
 use reentry::scalar::{Lanes, Scalar};
@@ -157,7 +159,7 @@ fn varied(case: &Case, input: usize, amount: f64) -> Case {
         panic!("{vehicle:?}")
     };
     let Atmosphere::Exponential { mut surface_density, scale_height } = case.atmosphere else { panic!("{case:?}") };
-    let mut bank_angle = case.parameters().bank_angle;
+    let mut bank_angle = 0.0;
     let mut state: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
     *match input {
         0 => &mut vehicle.mass,
@@ -171,7 +173,15 @@ fn varied(case: &Case, input: usize, amount: f64) -> Case {
     vehicle.aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient };
     let atmosphere = Atmosphere::Exponential { surface_density, scale_height };
     let initial_state = FlightPath::from(state).to_planet_fixed();
-    Case { vehicle, atmosphere, control: Control::banked(bank_angle), initial_state, ..case.clone() }
+    let control = match &case.control.bank_angle {
+        Command::Constant(angle) => Control::banked(angle + bank_angle),
+        // The whole schedule, turned.
+        Command::Schedule(schedule) => {
+            let turned = Command::Schedule(Arc::new(schedule.turned_by(bank_angle)));
+            Control { bank_angle: turned, ..case.control.clone() }
+        }
+    };
+    Case { vehicle, atmosphere, control, initial_state, ..case.clone() }
 }
 
 fn rows(sensitivities: &Sensitivities) -> [[f64; 12]; 5] {
@@ -230,6 +240,24 @@ fn sensitivities_are_the_slopes_of_the_impact() {
     agrees_with_differences("without lift", &ballistic);
 }
 
+/// Where a bank angle steps or the air grows denser at once, the flight turns a corner, sooner or later as the numbers vary.
+#[test]
+fn sensitivities_hold_across_changes_of_formula() {
+    let by = |against, at: &[f64], interpolation| {
+        let schedule = Schedule::new(against, at, &[0.3, 1.1, -0.4], interpolation).unwrap();
+        Control { bank_angle: Command::Schedule(Arc::new(schedule)), ..Control::banked(0.0) }
+    };
+    // TARGET case 2 falls from 122 km at 3 km/s, and dips at 79 s.
+    for (what, control) in [
+        ("steps in altitude", by(Against::Altitude, &[0.0, 15e3, 40e3], Interpolation::Step)),
+        ("steps in speed", by(Against::Speed, &[0.0, 1200.0, 2500.0], Interpolation::Step)),
+        ("steps in time", by(Against::Time, &[0.0, 40.0, 60.0], Interpolation::Step)),
+        ("lines in speed", by(Against::Speed, &[500.0, 1200.0, 2500.0], Interpolation::Linear)),
+    ] {
+        agrees_with_differences(what, &Case { control, ..target_2() });
+    }
+}
+
 /// In a vacuum straight up and down: t = 2v/g and the rest by hand, and the slope by a density that is zero.
 #[test]
 fn sensitivities_of_a_stone_thrown_upward_are_those_of_the_textbook() {
@@ -237,7 +265,8 @@ fn sensitivities_of_a_stone_thrown_upward_are_those_of_the_textbook() {
     let (radius, speed) = (6_378_137.0, 100.0);
     let up =
         FlightPath { radius, longitude: 0.3, geocentric_latitude: 0.2, speed, flight_path_angle: 1.2, heading: 0.4 };
-    let stone = Case { planet, initial_state: up.to_planet_fixed(), control: Control::banked(0.0), ..in_vacuum(target_2()) };
+    let stone =
+        Case { planet, initial_state: up.to_planet_fixed(), control: Control::banked(0.0), ..in_vacuum(target_2()) };
     let stone = Case { vehicle: vehicle(1.0, 0.01, 0.0, 1.0), ..stone };
     let flight = fly(stone);
     assert_eq!(flight.termination(), Termination::SurfaceImpact);

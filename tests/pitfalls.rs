@@ -8,7 +8,7 @@ use reentry::motion::Singularity;
 use reentry::scenario::Fault;
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{Sampling, Termination, Warning};
-use reentry::{Control, Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop, simulate};
+use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, simulate};
 
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
@@ -73,7 +73,11 @@ fn the_density_is_finite_at_every_altitude() {
         let density: f64 = Atmosphere::EARTH_JAMESON.density(0, altitude, &Hint::default());
         assert!(density.is_finite(), "{density} at {altitude}");
         // Of the least scale height there is, whose reciprocal no number holds.
-        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(0, altitude, &Hint::default());
+        let thin: f64 = Atmosphere::Exponential { surface_density: 1.0, scale_height: 5e-324 }.density(
+            0,
+            altitude,
+            &Hint::default(),
+        );
         assert!(thin.is_finite(), "{thin} at {altitude}");
     }
     // A heavy body at great speed straight down: its first trial steps end far below the ground.
@@ -121,7 +125,10 @@ fn the_atmosphere_is_not_jumped_over() {
 #[test]
 fn negative_lift_ends_in_the_vertical_and_not_in_chatter() {
     let state = FlightPath { flight_path_angle: -1.2, ..FlightPath::from_planet_fixed(&target_2().initial_state) };
-    let diving = starting(Case { vehicle: vehicle(700.0, 0.216_419, -0.5, 0.2), control: Control::banked(0.0), ..target_2() }, state);
+    let diving = starting(
+        Case { vehicle: vehicle(700.0, 0.216_419, -0.5, 0.2), control: Control::banked(0.0), ..target_2() },
+        state,
+    );
     let flight = fly(diving);
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
     assert!(flight.statistics().steps < 500, "{:?}", flight.statistics());
@@ -270,8 +277,10 @@ fn a_start_on_the_ground_flies_only_upward() {
             near("at once", flight.end_time(), 0.0, 0.0);
         }
         // Level, but faster than a satellite: the ground falls away.
-        let off =
-            fly(Case { stop: Stop { altitude: 0.0, time: 5.0 }, ..in_vacuum(starting(ballistic.clone(), at(0.0, 9000.0))) });
+        let off = fly(Case {
+            stop: Stop { altitude: 0.0, time: 5.0 },
+            ..in_vacuum(starting(ballistic.clone(), at(0.0, 9000.0)))
+        });
         assert_eq!(off.termination(), Termination::TimeLimit, "{above}");
     }
     let below = FlightPath { radius: 6_378_136.99, ..on_ground };

@@ -8,7 +8,7 @@ use reentry::coordinates::{FlightPath, PlanetFixed};
 use reentry::motion::STANDARD_GRAVITY;
 use reentry::planet::Shape;
 use reentry::trajectory::Sampling;
-use reentry::{Control, Aerodynamics, Case, Planet, Stop, Trajectory, Vehicle};
+use reentry::{Aerodynamics, Case, Control, Planet, Stop, Trajectory, Vehicle};
 
 use crate::check::{angle, near, relative};
 use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
@@ -142,7 +142,12 @@ fn the_altitude_is_the_distance_from_the_ellipse_along_the_radius() {
 fn positive_bank_turns_the_flight_to_the_left() {
     let heading = |bank_angle: f64| {
         let planet = Planet { rotation_rate: 0.0, ..Planet::EARTH_WGS84.spherical() };
-        let case = Case { planet, control: Control::banked(bank_angle), stop: Stop { altitude: 0.0, time: 60.0 }, ..target_2() };
+        let case = Case {
+            planet,
+            control: Control::banked(bank_angle),
+            stop: Stop { altitude: 0.0, time: 60.0 },
+            ..target_2()
+        };
         fly(case).last().flight_path.heading
     };
     let straight = heading(0.0);
@@ -164,7 +169,8 @@ fn upward_lift_makes_a_shallow_entry_skip() {
     let with_lift = |lift_coefficient: f64| {
         let aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient: 0.5 };
         let vehicle = Vehicle { mass: 2000.0, reference_area: 10.0, aerodynamics };
-        let case = Case { vehicle, control: Control::banked(0.0), initial_state: shallow.to_planet_fixed(), ..target_2() };
+        let case =
+            Case { vehicle, control: Control::banked(0.0), initial_state: shallow.to_planet_fixed(), ..target_2() };
         let flight = fly(case);
         // Rows of a second: does it ever climb?
         let times = flight.instants(&Sampling::Interval(1.0), 100_000).unwrap();

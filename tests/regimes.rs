@@ -4,15 +4,19 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use reentry::atmosphere::{Layer, Layers};
+use reentry::atmosphere::{Layer, Layers, Table};
 use reentry::control::{Against, Command, Interpolation, Schedule};
+use reentry::coordinates::Inertial;
+use reentry::motion::Switch;
 use reentry::planet::{Gravity, Zonal};
-use reentry::trajectory::Termination;
+use reentry::simulate::SimulationError;
+use reentry::trajectory::{Lookup, Sampling, Termination, Warning};
+use reentry::vehicle::{AlphaMachTable, MachTable};
 use reentry::wind::WindTable;
-use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Wind};
+use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};
 
 use crate::check::near;
-use crate::flights::{config, fly, miss, random_entry, spherical, target_2, vehicle, with_tolerance};
+use crate::flights::{config, fly, miss, random_entry, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
 fn schedule(against: Against, at: &[f64], value: &[f64], interpolation: Interpolation) -> Command {
     Command::Schedule(Arc::new(Schedule::new(against, at, value, interpolation).unwrap()))
@@ -131,7 +135,7 @@ fn a_jump_of_the_density_is_met_exactly() {
     let exact = fly(with_tolerance(case.clone(), 1e-13));
     assert!(miss(&flight, &exact) < 0.01, "{} m", miss(&flight, &exact));
     let jump = 1.2 * (-60.0_f64 / 7.0).exp() / 1e-5;
-    let crossing = flight.points(&flight.instants(&reentry::trajectory::Sampling::PerStep(1), 1000).unwrap());
+    let crossing = flight.points(&flight.instants(&Sampling::PerStep(1), 1000).unwrap());
     let after = crossing.iter().position(|point| (point.loads.altitude - 60e3).abs() < 1e-6).expect("a step ends there");
     let density = |point: usize| crossing[point].loads.density;
     // The instant of the change belongs to what follows.
@@ -255,5 +259,223 @@ proptest! {
         // 1e-10 of the energies of 6e7 J/kg, a hundred steps.
         prop_assert!(verification.energy_drift < 0.6, "{verification:?}");
         prop_assert!(verification.distance < 0.1, "{verification:?}");
+    }
+}
+
+fn by_mach(rows: [(f64, f64, f64); 4]) -> Aerodynamics {
+    let column = |pick: fn(&(f64, f64, f64)) -> f64| rows.each_ref().map(pick);
+    let table = MachTable::new(&column(|row| row.0), &column(|row| row.1), &column(|row| row.2)).unwrap();
+    Aerodynamics::MachTable(Arc::new(table))
+}
+
+/// Coefficients by Mach number from 0.5 to 20, and from 20° on, where they end, by angle of attack.
+fn by_alpha_and_mach() -> Aerodynamics {
+    let (alpha, mach) = ([-0.35, 0.0, 0.35, 0.7], [0.5, 0.9, 1.1, 2.0, 5.0, 20.0]);
+    let lift = |alpha: f64, mach: f64| alpha.sin() * alpha.cos() * (1.5 + 0.5 / mach);
+    let drag = |alpha: f64, mach: f64| 0.6 + alpha.sin().powi(2) + 0.4 * (-(mach - 1.1_f64).powi(2)).exp();
+    let matrix = |of: &dyn Fn(f64, f64) -> f64| {
+        alpha.map(|alpha| mach.map(|mach| of(alpha, mach)).to_vec()).to_vec()
+    };
+    let table = AlphaMachTable::new(&alpha, &mach, &matrix(&lift), &matrix(&drag)).unwrap();
+    Aerodynamics::AlphaMachTable(Arc::new(table))
+}
+
+/// The glide under the standard atmosphere with all that there is: wind, tables and schedules.
+fn everything() -> Case {
+    let wind = WindTable::new(&[0.0, 12e3, 30e3], &[5.0, 40.0, -10.0], &[0.0, -15.0, 8.0]).unwrap();
+    let control = Control {
+        bank_angle: schedule(Against::Mach, &[2.0, 8.0, 20.0], &[0.0, 1.0, -0.8], Interpolation::Linear),
+        angle_of_attack: schedule(Against::Altitude, &[20e3, 60e3], &[0.1, 0.3], Interpolation::Linear),
+    };
+    let vehicle = Vehicle { aerodynamics: by_alpha_and_mach(), ..vehicle(5000.0, 12.0, 0.0, 0.0) };
+    Case { atmosphere: Atmosphere::Us76, wind: Wind::Table(Arc::new(wind)), vehicle, control, ..glide() }
+}
+
+#[test]
+fn flights_with_every_model_are_exact_at_every_tolerance() {
+    let exact = fly(with_tolerance(everything(), 1e-13));
+    for (digits, bound) in [(8, 2.0), (10, 0.05), (12, 2e-3)] {
+        let flight = fly(with_tolerance(everything(), 10_f64.powi(-digits)));
+        assert!(miss(&flight, &exact) < bound, "1e-{digits}: {} m", miss(&flight, &exact));
+    }
+    let other = fly(spherical(with_tolerance(everything(), 1e-12)));
+    assert!(miss(&other, &exact) < 2e-3, "{} m", miss(&other, &exact));
+}
+
+/// A straight table is a constant, a ratio is a vehicle, a layer is an exponential, a factor is a density.
+#[test]
+fn models_that_say_the_same_fly_the_same() {
+    let plain = Case { vehicle: vehicle(5000.0, 12.0, 0.3, 1.2), ..glide() };
+    let end = fly(with_tolerance(plain.clone(), 1e-12));
+    let same = |what: &str, case: Case| {
+        let flight = fly(with_tolerance(case, 1e-12));
+        assert!(miss(&flight, &end) < 1e-4, "{what}: {} m", miss(&flight, &end));
+    };
+    let ratios = Aerodynamics::Ballistic { ballistic_coefficient: 5000.0 / (12.0 * 1.2), lift_to_drag: 0.25 };
+    same("ratios", Case { vehicle: Vehicle { aerodynamics: ratios, ..vehicle(1.0, 0.0, 0.0, 0.0) }, ..plain.clone() });
+    let Atmosphere::Exponential { surface_density, scale_height } = Atmosphere::EARTH_JAMESON else { panic!() };
+    let factor = Atmosphere::Exponential { surface_density: surface_density / 2.5, scale_height };
+    same("factor", Case { atmosphere: factor, density_factor: 2.5, ..plain.clone() });
+    let layer = Layer { base_altitude: 3e3, density: surface_density * (-3e3 / scale_height).exp(), scale_height };
+    let layers = Arc::new(Layers::new(vec![layer]).unwrap());
+    same("layer", Case { atmosphere: Atmosphere::Layers(layers), ..plain.clone() });
+    let altitude = [-1e3, 10e3, 20e3, 60e3, 130e3];
+    let density = altitude.map(|altitude: f64| surface_density * (-altitude / scale_height).exp());
+    // With a temperature, so that there is a Mach number.
+    let table = Arc::new(Table::new(&altitude, &density, Some(&[250.0; 5]), None).unwrap());
+    let tabled = Case { atmosphere: Atmosphere::Table(table), ..plain.clone() };
+    same("table", tabled.clone());
+    let flat = by_mach([(0.1, 0.3, 1.2), (1.0, 0.3, 1.2), (3.0, 0.3, 1.2), (5.0, 0.3, 1.2)]);
+    same("flat coefficients", Case { vehicle: Vehicle { aerodynamics: flat, ..plain.vehicle.clone() }, ..tabled });
+    same("no wind", Case { wind: Wind::Constant { east: 0.0, north: 0.0 }, ..plain.clone() });
+    let held = schedule(Against::Speed, &[1e3, 5e3], &[0.8, 0.8], Interpolation::Linear);
+    same("a level schedule", banked_by(held, plain.clone()));
+}
+
+/// In vacuum nothing but gravity acts, whatever flies.
+#[test]
+fn a_vacuum_is_air_without_density() {
+    let stop = Stop { time: 500.0, ..Stop::default() };
+    let vacuum = fly(Case { atmosphere: Atmosphere::Vacuum, stop, ..glide() });
+    let thin = fly(Case { density_factor: 0.0, stop, ..glide() });
+    assert!(miss(&vacuum, &thin) < 1e-3, "{} m", miss(&vacuum, &thin));
+    let [start, end] = [vacuum.initial(), vacuum.last()].map(|point| point.specific_energy);
+    near("energy", start, end, 1e-10 * start.abs());
+    assert_eq!(vacuum.last().loads.load_factor, 0.0);
+}
+
+/// The first time at each edge, and where.
+#[test]
+fn leaving_a_table_is_a_warning_that_says_where() {
+    let case = everything();
+    let flight = fly(case.clone());
+    let seen: Vec<_> = flight
+        .warnings()
+        .iter()
+        .map(|warning| match warning {
+            Warning::OutsideTable { table, edge, above, time, altitude } => (*table, *edge, *above, *time, *altitude),
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    let find = |table: Lookup, above: bool| {
+        let found: Vec<_> = seen.iter().filter(|seen| (seen.0, seen.2) == (table, above)).collect();
+        assert_eq!(found.len(), 1, "{table:?} {above}: {seen:?}");
+        *found[0]
+    };
+    // It starts above the wind, soon is faster than the table of coefficients, where the air is colder, and lands slower.
+    let (_, edge, _, time, altitude) = find(Lookup::Wind, true);
+    assert_eq!((edge, time), (30e3, 0.0));
+    near("altitude", altitude, flight.initial().loads.altitude, 1e-6);
+    for (above, mach) in [(true, 20.0), (false, 0.5)] {
+        let (_, edge, _, time, altitude) = find(Lookup::Mach, above);
+        let there = flight.at(time);
+        assert!(time > 1.0 && edge == mach);
+        near("Mach", there.loads.mach.unwrap(), mach, 1e-9);
+        near("altitude", altitude, there.loads.altitude, 1e-6);
+    }
+    assert_eq!(seen.len(), 3, "{seen:?}");
+    // At its last entry it is not left.
+    let last = Control { angle_of_attack: Command::Constant(0.7), ..Control::banked(0.0) };
+    let known = fly(Case { control: last, ..case.clone() });
+    assert!(known.warnings().iter().all(|warning| !format!("{warning:?}").contains("AngleOfAttack")));
+    let steep = Control { angle_of_attack: Command::Constant(0.8), ..Control::banked(0.0) };
+    let warned = fly(Case { control: steep, ..case });
+    assert!(warned.warnings().iter().any(|warning| matches!(
+        warning,
+        Warning::OutsideTable { table: Lookup::AngleOfAttack, edge: 0.7, above: true, time: 0.0, .. }
+    )));
+}
+
+/// The peak of the Mach number is where its rate vanishes, or at an end.
+#[test]
+fn the_peak_of_mach_is_no_less_than_any_row() {
+    let flight = fly(everything());
+    let peak = flight.peaks().mach.unwrap();
+    let rows = flight.points(&flight.instants(&Sampling::PerStep(16), 10_000).unwrap());
+    let greatest = rows.iter().map(|row| row.loads.mach.unwrap()).fold(0.0, f64::max);
+    assert!(peak.value >= greatest && peak.value < greatest * (1.0 + 1e-4), "{peak:?} {greatest}");
+    near("there", flight.at(peak.time).loads.mach.unwrap(), peak.value, 1e-9 * peak.value);
+    assert_eq!(fly(glide()).peaks().mach, None);
+}
+
+/// Brakes out above 80 m/s and in below: with them out a body falls more slowly, with them in faster.
+#[test]
+fn a_schedule_that_undoes_itself_is_refused_by_name() {
+    let (alpha, mach) = ([0.0, 0.5], [0.0, 1.0]);
+    let drag = [vec![0.5, 0.5], vec![2.0, 2.0]];
+    let table = AlphaMachTable::new(&alpha, &mach, &[vec![0.0; 2], vec![0.0; 2]], &drag).unwrap();
+    let aerodynamics = Aerodynamics::AlphaMachTable(Arc::new(table));
+    let state = FlightPath {
+        radius: 6_380_137.0,
+        longitude: 0.0,
+        geocentric_latitude: 0.0,
+        speed: 200.0,
+        flight_path_angle: -1.5,
+        heading: 0.0,
+    };
+    let brake = |interpolation, at: &[f64], value: &[f64]| Case {
+        planet: Planet::EARTH_WGS84.spherical(),
+        atmosphere: Atmosphere::Us76,
+        // Terminal speeds of 115 and 57 m/s.
+        vehicle: Vehicle { aerodynamics: aerodynamics.clone(), ..vehicle(400.0, 1.0, 0.0, 0.0) },
+        control: Control {
+            angle_of_attack: schedule(Against::Speed, at, value, interpolation),
+            ..Control::banked(0.0)
+        },
+        initial_state: state.to_planet_fixed(),
+        ..target_2()
+    };
+    let error = try_to_fly(brake(Interpolation::Step, &[0.0, 80.0], &[0.0, 0.5])).unwrap_err();
+    assert!(
+        matches!(error, SimulationError::Chatter { switch: Switch::AngleOfAttack, time } if time > 1.0),
+        "{error:?}: {error}"
+    );
+    assert!(error.to_string().contains("angle of attack"), "{error}");
+    // A line between them settles on the speed at which drag and weight are equal.
+    let flight = fly(brake(Interpolation::Linear, &[79.0, 81.0], &[0.0, 0.5]));
+    assert!((79.0..81.0).contains(&flight.last().flight_path.speed), "{}", flight.last().flight_path.speed);
+}
+
+/// Downrange and crossrange by spherical trigonometry: Napier's rules of the right-angled triangle.
+#[test]
+fn downrange_and_crossrange_are_legs_of_a_right_angled_triangle() {
+    let flight = fly(everything());
+    let start = flight.initial().flight_path;
+    // To a rounding of the angle.
+    near("at the start", flight.initial().downrange.unwrap(), 0.0, 1e-8);
+    for part in [0.2, 0.6, 1.0] {
+        let point = flight.at(part * flight.end_time());
+        let here = point.flight_path;
+        let difference = here.longitude - start.longitude;
+        let ((sin_0, cos_0), (sin_1, cos_1)) = (start.geocentric_latitude.sin_cos(), here.geocentric_latitude.sin_cos());
+        let distance = (sin_0 * sin_1 + cos_0 * cos_1 * difference.cos()).acos();
+        let course = (cos_0 * sin_1 - sin_0 * cos_1 * difference.cos()).atan2(difference.sin() * cos_1);
+        let off = start.heading - course;
+        let (along, across) = ((distance.tan() * off.cos()).atan(), (distance.sin() * off.sin()).asin());
+        near("downrange", point.downrange.unwrap(), along * 6_378_137.0, 1e-2);
+        near("crossrange", point.crossrange.unwrap(), across * 6_378_137.0, 1e-2);
+    }
+    let down = FlightPath { flight_path_angle: -std::f64::consts::FRAC_PI_2, ..start };
+    let rest = FlightPath { speed: 0.0, ..start };
+    for state in [down, rest] {
+        let flight = fly(Case { initial_state: state.to_planet_fixed(), ..glide() });
+        assert_eq!((flight.last().downrange, flight.last().crossrange), (None, None));
+    }
+}
+
+/// The inertial quantities of a row are those of its state in the inertial frame.
+#[test]
+fn inertial_quantities_are_those_of_the_inertial_state() {
+    let flight = fly(everything());
+    for part in [0.0, 0.3, 0.9] {
+        let point = flight.at(part * flight.end_time());
+        let planet = everything().planet;
+        let state = point.flight_path.to_planet_fixed();
+        let inertial = Inertial::from_planet_fixed(&state, &planet, 4321.0);
+        near("speed", point.inertial_speed, inertial.velocity.norm(), 1e-9);
+        let sine = inertial.velocity.normalize().dot(&inertial.position.normalize());
+        near("angle", point.inertial_flight_path_angle.sin(), sine, 1e-12);
+        let energy = inertial.velocity.norm_squared() / 2.0 + planet.potential(&state.position);
+        near("energy", point.specific_energy, energy, 1e-3);
     }
 }

@@ -114,6 +114,13 @@ impl Schedule {
         self.against
     }
 
+    /// The same schedule with an angle, rad, added everywhere.
+    #[must_use]
+    pub fn turned_by(&self, angle: f64) -> Self {
+        let turned = |stretch: &Stretch| Stretch { base: stretch.base + angle, ..*stretch };
+        Self { stretches: self.stretches.iter().map(turned).collect(), ..self.clone() }
+    }
+
     /// The angle, rad, where the quantity has a value, by the formula of a stretch: 0 before the first corner, 1 after it, and so on.
     #[inline(always)]
     pub fn angle<S: Scalar>(&self, stretch: usize, quantity: S) -> S {

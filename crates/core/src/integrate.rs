@@ -136,8 +136,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
     pub fn shorten<F: Pace<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
-        let trial =
-            step::attempt(system, self.control.time, &self.state, &self.derivative, end - step.start_time);
+        let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, end - step.start_time);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
         let end_derivative = system.derivative(end, &trial.end);
         self.take(system, trial, end, end_derivative)

@@ -183,7 +183,11 @@ impl<P: Scalar> Forces<P> {
     /// Jameson 2006, equations 17 and 21 to 23, without the step to the vehicle-pointing axes.
     #[inline(always)]
     pub fn acceleration<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
-        if self.of_thesis { self.acceleration_by::<true, S>(time, state) } else { self.acceleration_by_any(time, state) }
+        if self.of_thesis {
+            self.acceleration_by::<true, S>(time, state)
+        } else {
+            self.acceleration_by_any(time, state)
+        }
     }
 
     /// Not inlined: the models that the thesis does not have would be in the way of those that it has.
@@ -257,9 +261,18 @@ impl<P: Scalar> Forces<P> {
     /// The air at an altitude, m, that meets a vehicle in the directions of its velocity relative to the air, at a speed relative to
     /// the planet, m/s.
     #[inline(always)]
-    fn flow_of<const THESIS: bool, S: Over<P>>(&self, altitude: S, directions: Directions<S>, ground_speed: S) -> Flow<S> {
+    fn flow_of<const THESIS: bool, S: Over<P>>(
+        &self,
+        altitude: S,
+        directions: Directions<S>,
+        ground_speed: S,
+    ) -> Flow<S> {
         let density_and_mach = (!THESIS && self.by_mach).then(|| {
-            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
+            let (density, sound) = self.models.atmosphere.density_and_sound(
+                self.regime.of(Switch::Atmosphere),
+                altitude,
+                &self.cells.atmosphere,
+            );
             (density, directions.speed * sound.recip())
         });
         Flow { altitude, directions, ground_speed, density_and_mach }
@@ -281,7 +294,11 @@ impl<P: Scalar> Forces<P> {
     fn density<const THESIS: bool, S: Over<P>>(&self, flow: &Flow<S>) -> S {
         let of_model = match flow.density_and_mach {
             Some((density, _)) => density,
-            None => self.models.atmosphere.density(self.regime.of(Switch::Atmosphere), flow.altitude, &self.cells.atmosphere),
+            None => self.models.atmosphere.density(
+                self.regime.of(Switch::Atmosphere),
+                flow.altitude,
+                &self.cells.atmosphere,
+            ),
         };
         of_model * self.parameters.density
     }
@@ -330,7 +347,8 @@ impl<P: Scalar> Forces<P> {
     /// σ, rad.
     #[inline(always)]
     fn bank_angle<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        self.command(&self.models.control.bank_angle, self.regime.of(Switch::BankAngle), time, flow) + self.parameters.bank_angle
+        self.command(&self.models.control.bank_angle, self.regime.of(Switch::BankAngle), time, flow)
+            + self.parameters.bank_angle
     }
 
     /// α, rad.
@@ -442,7 +460,11 @@ impl Forces {
         let PlanetFixed { position, velocity } = state;
         let mut flow = self.flow::<false, _>(state);
         if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
-            let (density, sound) = self.models.atmosphere.density_and_sound(self.regime.of(Switch::Atmosphere), flow.altitude, &self.cells.atmosphere);
+            let (density, sound) = self.models.atmosphere.density_and_sound(
+                self.regime.of(Switch::Atmosphere),
+                flow.altitude,
+                &self.cells.atmosphere,
+            );
             flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
         }
         let Directions { radius, speed, up, ahead, cos_gamma, .. } = &flow.directions;
@@ -466,15 +488,7 @@ impl Forces {
         let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
         let load_factor = dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY);
         let mach = flow.density_and_mach.map(|(_, mach)| mach);
-        Loads {
-            altitude: flow.altitude,
-            density,
-            air_speed: *speed,
-            mach,
-            dynamic_pressure,
-            deceleration,
-            load_factor,
-        }
+        Loads { altitude: flow.altitude, density, air_speed: *speed, mach, dynamic_pressure, deceleration, load_factor }
     }
 
     fn lift_and_drag_coefficient<S: Over<f64>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
@@ -499,7 +513,8 @@ impl Forces {
     /// The air in a state, as far as the atmosphere knows it.
     pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
         let altitude = self.models.planet.shape.altitude(&state.position);
-        let sample = self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
+        let sample =
+            self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
         // By the law of gases, denser air of the same temperature presses harder.
         let factor = self.parameters.density;
         AtmosphereSample {

@@ -107,12 +107,8 @@ pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajector
 pub fn arrival(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Arrival, SimulationError> {
     let forces = scenario.case().forces();
     match scenario.case().solver.equations {
-        Equations::Cartesian => {
-            fly(scenario, &mut Flight::start(scenario, Cartesian(forces), interrupt)?, |_| Ok(()))
-        }
-        Equations::Spherical => {
-            fly(scenario, &mut Flight::start(scenario, Spherical(forces), interrupt)?, |_| Ok(()))
-        }
+        Equations::Cartesian => fly(scenario, &mut Flight::start(scenario, Cartesian(forces), interrupt)?, |_| Ok(())),
+        Equations::Spherical => fly(scenario, &mut Flight::start(scenario, Spherical(forces), interrupt)?, |_| Ok(())),
     }
 }
 

@@ -65,6 +65,11 @@ impl Switch {
     /// All of them.
     pub(crate) const ALL: [Self; 6] =
         [Self::Atmosphere, Self::Wind, Self::Mach, Self::TableAngleOfAttack, Self::BankAngle, Self::AngleOfAttack];
+
+    /// Whether it is the first and the last entry of a table.
+    fn is_of_table(self) -> bool {
+        matches!(self, Self::Wind | Self::Mach | Self::TableAngleOfAttack)
+    }
 }
 
 impl Regime {
@@ -121,7 +126,9 @@ impl<P: Scalar> Forces<P> {
                 Aerodynamics::AlphaMachTable(table) => Some((MACH, &table.mach_range()[..])),
             },
             Switch::TableAngleOfAttack => match &self.models.aerodynamics {
-                Aerodynamics::AlphaMachTable(table) => Some((Quantity::AngleOfAttack, &table.angle_of_attack_range()[..])),
+                Aerodynamics::AlphaMachTable(table) => {
+                    Some((Quantity::AngleOfAttack, &table.angle_of_attack_range()[..]))
+                }
                 _ => None,
             },
             Switch::BankAngle => self.models.control.bank_angle.corners().map(along),
@@ -196,9 +203,9 @@ impl Forces {
         // A switch may turn another one: the angle of attack that of its table.
         for _ in 0..=Switch::ALL.len() {
             let regime = self.regime_ahead(time, state);
-            let Some(switch) = Switch::ALL.into_iter().find(|switch| regime.of(*switch) != self.regime.of(*switch)) else {
-                return Ok(());
-            };
+            // The schedules come last, and first in what is said to switch.
+            let turns = |switch: &Switch| regime.of(*switch) != self.regime.of(*switch);
+            let Some(switch) = Switch::ALL.into_iter().rfind(turns) else { return Ok(()) };
             (turned, self.regime) = (switch, regime);
         }
         Err(Chatter(turned))
@@ -216,7 +223,10 @@ impl Forces {
             let Some((quantity, boundaries)) = self.boundaries(switch) else { return 0 };
             let now = readings[switch as usize];
             let resolution = quantity.resolution();
-            let ahead = if now.eps < 0.0 { now.re - resolution } else { now.re + resolution };
+            // What stays at the end of a table is still in it.
+            let leaves = now.eps > 0.0 || !switch.is_of_table();
+            let ahead =
+                now.re + if now.eps < 0.0 || !leaves && now.re > boundaries[0] { -resolution } else { resolution };
             boundaries.partition_point(|boundary| *boundary <= ahead)
         }))
     }

@@ -85,7 +85,13 @@ struct Velocity<S> {
 impl<P: Scalar> Spherical<P> {
     /// Lift and drag over the mass, m/s²: along the velocity, across it upward, and across it to the left over cos γ.
     #[inline(always)]
-    fn aerodynamic<const THESIS: bool, S: Over<P>>(&self, time: S, altitude: S, radius: S, velocity: &Velocity<S>) -> [S; 3] {
+    fn aerodynamic<const THESIS: bool, S: Over<P>>(
+        &self,
+        time: S,
+        altitude: S,
+        radius: S,
+        velocity: &Velocity<S>,
+    ) -> [S; 3] {
         let Velocity { speed, sin_gamma, cos_gamma, sin_psi, cos_psi } = *velocity;
         // Up, east and north are axes like any others.
         let unit = [sin_gamma, cos_gamma * cos_psi, cos_gamma * sin_psi];

@@ -83,9 +83,7 @@ impl Extremes {
     /// Warns of every table outside which the present regime lies, once an edge.
     fn warn_outside_tables(&mut self, forces: &Forces, time: f64) {
         for (table, edge, above) in forces.outside_tables() {
-            let known = |warning: &Warning| {
-                matches!(warning, Warning::OutsideTable { table: of, above: side, .. } if (*of, *side) == (table, above))
-            };
+            let known = |warning: &Warning| matches!(warning, Warning::OutsideTable { table: of, above: side, .. } if (*of, *side) == (table, above));
             if !self.warnings.iter().any(known) {
                 let altitude = self.loads.altitude.re;
                 self.warnings.push(Warning::OutsideTable { table, time, altitude, edge, above });
