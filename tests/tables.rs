@@ -432,7 +432,8 @@ fn the_wind_of_a_table() {
 fn models() -> Vec<(Atmosphere, usize)> {
     let altitude = [-1e3, 0.0, 12e3, 50e3, 90e3];
     let density = [1.3, 1.2, 0.3, 1e-3, 3e-6];
-    let temperature: &[f64] = &[290.0, 288.15, 217.0, 270.0, 180.0];
+    // So cold at the end that its cubic goes on below absolute zero.
+    let temperature: &[f64] = &[290.0, 288.15, 217.0, 270.0, 20.0];
     let pressure: &[f64] = &[1.1e5, 1e5, 1.9e4, 80.0, 0.2];
     let table = |density: &[f64]| Arc::new(Table::new(&altitude, density, Some(temperature), Some(pressure)).unwrap());
     let layers = vec![
