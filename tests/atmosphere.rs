@@ -168,6 +168,11 @@ fn formulas_go_on_over_their_boundaries() {
             let far = density_in(stretch, Dual64::new(boundary - 10e3 * side, 1.0));
             // Where nitrogen leaves the mixed air, at 100 km, its scale height jumps by 3 %, and the formula for all gases with it.
             relative("slope", outside.eps, inside.eps, if below == 10 { 4e-2 } else { 1e-5 });
+            // The speed of sound goes on as it is: a kilometre from the boundary it is still the line there, but for a bend.
+            let [inside, outside, beyond] = [1e-3 * side, -1e-3 * side, -1e3 * side]
+                .map(|over| sample_in(stretch, Dual64::new(boundary + over, 1.0)).speed_of_sound);
+            near("slope of sound", outside.eps, inside.eps, 1e-7);
+            near("sound", beyond.re, inside.re - 1e3 * side * inside.eps, 3.0);
             let scale_height = -far.re / far.eps;
             assert!((4e3..400e3).contains(&scale_height), "{scale_height} m beyond {boundary} m by {stretch}");
         }

@@ -4,7 +4,7 @@
 use std::f64::consts::LN_2;
 use std::sync::Arc;
 
-use num_dual::Dual64;
+use num_dual::{Dual2_64, Dual64};
 use proptest::prelude::*;
 use reentry::Atmosphere;
 use reentry::atmosphere::{Layer, Layers, Table, us76};
@@ -155,7 +155,7 @@ fn one_entry_is_a_constant_and_two_are_a_line() {
     }
     let two = Cubics::new(&[2.0, 4.0], [&[5.0, 9.0]]).unwrap();
     for (x, value) in [(2.0, 5.0), (2.5, 6.0), (4.0, 9.0), (5.0, 11.0), (6.0, 13.0), (7.0, 13.0), (-1.0, 1.0)] {
-        assert_eq!(cubic(&two, 1, x), value, "at {x}");
+        near(&format!("at {x}"), cubic(&two, 1, x), value, 0.0);
     }
 }
 
@@ -172,6 +172,18 @@ fn smooth_functions_are_met_to_the_third_order() {
     };
     let (coarse, fine) = (error(20), error(40));
     assert!(fine < 0.14 * coarse && coarse < 1e-5, "{coarse:e}, {fine:e}");
+}
+
+/// Of the parabola (x + 10)², whose secants are 21 and 24, over 1 and 2: the slope of the parabola, and no bend at the ends.
+#[test]
+fn slopes_are_those_of_parabolas_and_bends_vanish_at_the_ends() {
+    let cubics = Cubics::new(&[0.0, 1.0, 3.0], [&[100.0, 121.0, 169.0]]).unwrap();
+    // By the factor: δ = 1/15, and 3 δ⁴ = 6e-5.
+    near("slope", cubic(&cubics, 1, Dual64::new(1.0, 1.0)).eps, 22.0, 2e-3);
+    for x in [0.0, 3.0] {
+        let bend = cubic(&cubics, 1, Dual2_64::from(x).derivative()).v2;
+        near(&format!("bend at {x}"), bend, 0.0, 1e-12);
+    }
 }
 
 #[test]
@@ -375,7 +387,7 @@ fn coefficients_beyond_a_table_are_those_of_its_edge() {
         near("lift", found.lift.re, lift[row][column], 1e-14);
         near("drag", found.drag.re, drag[row][column], 1e-14);
         if stretches[0] != 1 {
-            assert_eq!([found.lift.eps, found.drag.eps], [0.0, 0.0]);
+            assert_eq!((found.lift.eps, found.drag.eps), (0.0, 0.0));
         }
     }
     let of_mach = MachTable::new(&grid.second, &lift[2], &drag[2]).unwrap();
@@ -406,8 +418,9 @@ fn a_vehicle_has_lift_where_its_model_has_some() {
 #[test]
 fn the_wind_of_a_table() {
     let table = WindTable::new(&[0.0, 10e3, 20e3], &[0.0, 30.0, 10.0], &[5.0, 5.0, 5.0]).unwrap();
-    assert_eq!(table.range(), &[0.0, 20e3]);
     let hint = Hint::default();
+    let [low, high] = *table.range();
+    assert_eq!((low, high), (0.0, 20e3));
     for (stretch, altitude, east) in [(0, -1e3, 0.0), (1, 0.0, 0.0), (1, 10e3, 30.0), (2, 20e3, 10.0), (2, 1e6, 10.0)] {
         let [found, north] = table.velocity(stretch, altitude, &hint);
         near("east", found, east, 1e-12);
@@ -419,7 +432,8 @@ fn the_wind_of_a_table() {
 fn models() -> Vec<(Atmosphere, usize)> {
     let altitude = [-1e3, 0.0, 12e3, 50e3, 90e3];
     let density = [1.3, 1.2, 0.3, 1e-3, 3e-6];
-    let temperature: &[f64] = &[290.0, 288.15, 217.0, 270.0, 180.0];
+    // So cold at the end that its cubic goes on below absolute zero.
+    let temperature: &[f64] = &[290.0, 288.15, 217.0, 270.0, 20.0];
     let pressure: &[f64] = &[1.1e5, 1e5, 1.9e4, 80.0, 0.2];
     let table = |density: &[f64]| Arc::new(Table::new(&altitude, density, Some(temperature), Some(pressure)).unwrap());
     let layers = vec![
@@ -592,7 +606,7 @@ fn scale_heights_and_sensible_altitudes_of_odd_tables() {
     let cliff = model(&[0.0, 30e3, 30_001.0, 100e3], &[1.0, 0.5, 1e-30, 1e-31]);
     assert_eq!((cliff.scale_height(), cliff.sensible_altitude()), (100.0, 30_001.0));
     let high = model(&[100e3, 200e3], &[1.0, 0.5]);
-    assert_eq!(high.scale_height(), 100e3);
+    near("scale height", high.scale_height(), 100e3, 0.0);
     // e⁻³⁷ of that at altitude 0, which is twice that of 100 km.
     relative("sensible altitude", high.sensible_altitude(), 37.0 * 100e3 / LN_2, 1e-13);
 }
@@ -608,11 +622,11 @@ fn layers_are_exponentials_from_their_bases() {
     assert_eq!(layers.boundaries(), [40e3, 60e3]);
     relative("below the first base", layers.density(0, -8e3), 1.0_f64.exp(), 1e-15);
     relative("in the first", layers.density(0, 16e3), (-2.0_f64).exp(), 1e-15);
-    assert_eq!([layers.density(1, 40e3), layers.density(2, 60e3)], [0.01, 0.0]);
+    assert_eq!((layers.density(1, 40e3), layers.density(2, 60e3)), (0.01, 0.0));
     relative("in the second, over its end", layers.density(1, 65e3), 0.01 * (-5.0_f64).exp(), 1e-15);
     assert_eq!((layers.scale_height(), layers.sensible_altitude()), (5e3, 60e3));
     let none = Layers::new(vec![Layer { base_altitude: 0.0, density: 0.0, scale_height: 5e3 }]).unwrap();
-    assert_eq!(none.sensible_altitude(), 0.0);
+    near("no air", none.sensible_altitude(), 0.0, 0.0);
     let above = Layers::new(vec![Layer { base_altitude: 10e3, density: 1.0, scale_height: 5e3 }]).unwrap();
     relative("from the surface", above.sensible_altitude(), 37.0 * 5e3, 1e-15);
 }
@@ -624,7 +638,7 @@ fn seven_layers_are_as_near_the_standard_as_documented() {
     let bases: Vec<f64> = earth.layers().iter().map(|layer| layer.base_altitude).collect();
     assert_eq!(bases, [0.0, 10e3, 43e3, 68e3, 82e3, 112e3, 120e3]);
     for layer in earth.layers() {
-        assert_eq!(layer.density, us76::density(layer.base_altitude));
+        near("density at a base", layer.density, us76::density(layer.base_altitude), 0.0);
     }
     let error = |h: f64| earth.density(stretch_of(earth.boundaries(), h), h) / us76::density(h) - 1.0;
     near("at 130 km", error(130e3), 0.0, 1e-13);

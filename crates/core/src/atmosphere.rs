@@ -81,7 +81,9 @@ impl Atmosphere {
         }
     }
 
-    /// The density of the models with stretches: apart, so that the flights of the exponential model do not carry its instructions.
+    /// The density of the other models: apart, so that flights by the exponential one do not carry its instructions, and cold, so that
+    /// they do not make room for it either.
+    #[cold]
     #[inline(never)]
     fn density_by_stretch<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
         match self {

@@ -13,7 +13,7 @@
 //!
 //! For all intervals |d| is less than 2.93 of the lesser secant, and 3 of it are allowed to a monotone cubic (Fritsch and Carlson).
 //! The slopes of the first and the last entry let the second derivative vanish there. Straight lines come back as they are.
-//! The factors in use elsewhere have corners as functions of the entries; this one has none, so that the entries may themselves be
+//! The usual factors have corners as functions of the entries; this one has none, so that the entries may themselves be
 //! functions of another argument: the interpolation by two arguments then has continuous slopes along both.
 //!
 //! # Stretches
@@ -163,7 +163,7 @@ impl Axis {
     }
 }
 
-/// The slope between two secants; the weight is that of the one before.
+/// The slope between two secants; the weight is that of the one before. Where both are 0 the slope is 0, with all its derivatives.
 #[inline(always)]
 fn slope_between<S: Scalar>(before: S, after: S, weight: S) -> S {
     let delta = (after - before) * (before + after).recip();
@@ -227,4 +227,27 @@ fn cubics(abscissae: &[f64], values: &[f64]) -> Result<Vec<Cubic>, TableError> {
 #[inline(always)]
 fn polynomial<S: Scalar>(x: S, [c0, c1, c2, c3]: [S; 4]) -> S {
     ((c3 * x + c2) * x + c1) * x + c0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slope_between;
+
+    /// So much is allowed to a monotone cubic that it is sure to be one: 3; the bound in the description is nearly reached.
+    #[test]
+    fn slopes_are_less_than_thrice_the_lesser_secant() {
+        let weights = (0..=20).map(|twentieth| f64::from(twentieth) / 20.0);
+        let ratios = (0..=3000).map(|step| f64::exp(f64::from(step) * 1e-3));
+        let greatest = ratios.flat_map(|ratio| {
+            weights.clone().flat_map(move |weight| {
+                [
+                    slope_between(1.0, ratio, weight),
+                    slope_between(ratio, 1.0, weight),
+                    -slope_between(-1.0, -ratio, weight),
+                ]
+            })
+        });
+        let greatest = greatest.fold(0.0, f64::max);
+        assert!(greatest < 2.93 && greatest > 2.92, "{greatest}");
+    }
 }
