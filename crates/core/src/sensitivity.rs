@@ -34,6 +34,8 @@ pub struct Gradient {
     pub bank_angle: f64,
     /// By the density at altitude 0, kg/m³.
     pub surface_density: f64,
+    /// By the density factor.
+    pub density_factor: f64,
     /// By the initial state; its radius stays when its latitude changes.
     pub initial_state: FlightPath<f64>,
 }
@@ -85,6 +87,7 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
             drag_coefficient,
             bank_angle,
             surface_density,
+            density_factor: f64::NAN,
             initial_state,
         }
     };
@@ -111,6 +114,7 @@ impl Gradient {
         drag_coefficient: f64::NAN,
         bank_angle: f64::NAN,
         surface_density: f64::NAN,
+        density_factor: f64::NAN,
         initial_state: FlightPath {
             radius: f64::NAN,
             longitude: f64::NAN,

@@ -41,6 +41,12 @@ impl Layers {
         }
     }
 
+    /// The Earth's, in seven layers.
+    pub fn earth_seven_layer() -> Self {
+        let layer = Layer { base_altitude: 0.0, density: 1.225, scale_height: 7200.0 };
+        Self { layers: vec![layer], boundaries: Vec::new() }
+    }
+
     /// The layers, from the lowest to the highest.
     pub fn layers(&self) -> &[Layer] {
         &self.layers
