@@ -315,16 +315,23 @@ impl Object<'_> {
         (list.len() == count).then_some(list)
     }
 
+    /// Whether a fault of the field as a whole is noted.
+    fn is_at_fault(&self, name: &str) -> bool {
+        let pointer = format!("{}/{name}", self.pointer);
+        self.context.faults.iter().any(|fault| fault.pointer == pointer)
+    }
+
     /// The number of entries of a list, if the field is one.
     fn count(&self, name: &str) -> Option<usize> {
         self.map.get(name).and_then(Value::as_array).map(Vec::len)
     }
 
-    /// Notes a fault at every list of the table whose length is not that of the first.
+    /// Notes a fault at every list of the table whose length is not that of the first, where neither is at fault already.
     pub fn equally_long(&mut self, first: &str, others: &[&str]) -> bool {
         let mut sound = true;
         for name in others {
-            if let (Some(expected), Some(got)) = (self.count(first), self.count(name))
+            let lists = [first, *name].map(|list| self.count(list).filter(|_| !self.is_at_fault(list)));
+            if let [Some(expected), Some(got)] = lists
                 && expected != got
             {
                 self.fault_of(name, format!("must have as many entries as {first}, {expected}, got {got}"));
