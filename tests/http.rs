@@ -16,6 +16,7 @@ mod ranges;
 mod analytic;
 mod batch;
 mod convert;
+mod models;
 mod nesc;
 mod output;
 mod sidereal_time;

@@ -212,14 +212,14 @@ async fn the_echo_gives_the_same_answer() {
 }
 
 #[tokio::test]
-async fn a_bank_angle_and_the_frame_of_date_are_warned_of() {
+async fn a_bank_angle_wind_and_the_frame_of_date_are_warned_of() {
     for kind in KINDS {
         let answer = compare(&with(&flight(kind), "/solution", "shallow_glide")).await;
         let warnings = answer["warnings"].as_array().unwrap();
         let codes: Vec<_> = warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect();
         let inertial = kind == "eci" || kind == "orbital_elements";
         let frame = inertial.then_some("inertial_frame_of_date");
-        assert_eq!(codes, frame.into_iter().chain(["bank_angle_left_out"]).collect::<Vec<_>>());
+        assert_eq!(codes, frame.into_iter().chain(["bank_angle_left_out", "wind_left_out"]).collect::<Vec<_>>());
     }
 }
 

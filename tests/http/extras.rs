@@ -8,13 +8,14 @@ use crate::check;
 use super::requests::{flight, with, with_all};
 use super::simulate::fly;
 
-const INPUTS: [&str; 12] = [
+const INPUTS: [&str; 13] = [
     "mass",
     "reference_area",
     "lift_coefficient",
     "drag_coefficient",
     "bank_angle",
     "surface_density",
+    "density_factor",
     "radius",
     "longitude",
     "geocentric_latitude",

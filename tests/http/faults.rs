@@ -10,7 +10,7 @@ use super::requests::{ALTERNATIVES, KINDS, capsule, conversion, flight, state, w
 async fn every_missing_field_is_named() {
     let steady = Steady::new().await;
     let fields: Vec<_> = fields().into_iter().filter(|field| field.need == Need::Required).collect();
-    assert_eq!(fields.len(), 88);
+    assert_eq!(fields.len(), 119);
     for field in fields {
         let request = without(&field.request, &field.pointer);
         steady.refused_at(field.path, &request, &[(&field.pointer, "is required")]).await;
@@ -37,7 +37,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 _ => "got ",
             };
             let expected = match field.kind {
-                Kind::Number(_) | Kind::Angle(_) => "must be a number",
+                Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) => "must be a number",
                 Kind::Whole => "must be a whole number",
                 Kind::Name => "must be one of ",
                 Kind::Text => "must be a string",
@@ -45,6 +45,9 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::False => "must be false",
                 Kind::Object => "must be an object",
                 Kind::Vector | Kind::Numbers => "must be an array of numbers",
+                Kind::Matrix => "must be an array of arrays of numbers",
+                Kind::Names => "must be an array of names",
+                Kind::Objects => "must be an array of objects",
                 Kind::Instant => "must be an RFC 3339 time",
                 Kind::SiderealTime => "must be a number of seconds or \"HH:MM:SS.s\"",
             };
@@ -129,8 +132,16 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 }
                 "/solution" => "must be one of shallow_glide, loh, steep_glide, steep_ballistic, medium_glide, got ",
                 "/planet/shape" => "must be one of sphere, ellipsoid, got ",
-                "/atmosphere/type" => "must be one of exponential, got ",
-                "/vehicle/aerodynamics/type" => "must be one of constant, got ",
+                "/planet/gravity/type" => "must be one of inverse_square, zonal, got ",
+                "/atmosphere/type" => "must be one of exponential, us76, layered_exponential, table, vacuum, got ",
+                "/atmosphere/preset" => "must be one of earth_seven_layer, got ",
+                "/wind/type" => "must be one of constant, table, got ",
+                "/vehicle/aerodynamics/type" => {
+                    "must be one of constant, ballistic, mach_table, alpha_mach_table, got "
+                }
+                "/control/bank_angle/type" => "must be one of schedule, got ",
+                "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, got ",
+                "/control/bank_angle/interpolation" => "must be one of linear, step, got ",
                 "/solver/formulation" => "must be one of cartesian, spherical, got ",
                 _ => {
                     "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, inertial_flight_path, got "

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use serde_json::{Value, json};
 
-use super::requests::{ALTERNATIVES, KINDS, conversion, flight, with, without};
+use super::requests::{ALTERNATIVES, KINDS, conversion, flight, models, with, without};
 
 /// A field of a request.
 pub(crate) struct Field {
@@ -35,6 +35,8 @@ pub(crate) enum Kind {
     Number(Range),
     /// A number in the request's unit of angles; the range is in radians.
     Angle(Range),
+    /// The same, or an object with a schedule.
+    Command(Range),
     /// A whole number.
     Whole,
     /// One of some names.
@@ -47,6 +49,11 @@ pub(crate) enum Kind {
     /// Three numbers.
     Vector,
     Numbers,
+    /// Rows of numbers.
+    Matrix,
+    /// Some of several names.
+    Names,
+    Objects,
     /// An RFC 3339 time.
     Instant,
     /// Seconds or `"HH:MM:SS.s"`.
@@ -70,7 +77,10 @@ pub(crate) enum Limit {
     Unlimited,
 }
 
-use Kind::{Angle, Boolean, False, Instant, Name, Number, Numbers, Object, SiderealTime, Text, Vector, Whole};
+use Kind::{
+    Angle, Boolean, Command, False, Instant, Matrix, Name, Names, Number, Numbers, Object, Objects, SiderealTime, Text,
+    Vector, Whole,
+};
 use Limit::{Closed, Open, Unlimited};
 use Need::{Alternative, Optional, Required};
 
@@ -85,30 +95,42 @@ const QUARTER: Range = between(-FRAC_PI_2, FRAC_PI_2);
 const HALF: Range = between(0.0, PI);
 const TURN: Range = between(-TAU, TAU);
 
+const WIND: Range = between(-1e4, 1e4);
+const COEFFICIENT: Range = between(-0.1, 0.1);
+
 const fn between(low: f64, high: f64) -> Range {
     Range { low: Closed(low), high: Closed(high) }
 }
 
 type Row = (&'static str, Need, Kind);
 
-const SHARED: [Row; 9] = [
+const SHARED: [Row; 13] = [
     ("/angle_unit", Optional, Name),
     ("/echo", Optional, Boolean),
     ("/epoch", Optional, Instant),
     ("/planet", Optional, Object),
     ("/planet/shape", Optional, Name),
+    ("/planet/gravity", Optional, Object),
+    ("/planet/gravity/type", Required, Name),
+    ("/planet/gravity/degree", Optional, Whole),
+    ("/planet/gravity/j2", Required, Number(COEFFICIENT)),
     ("/planet/gravitational_parameter", Required, Number(between(1e-6, 1e25))),
     ("/planet/equatorial_radius", Required, Number(PLANET_RADIUS)),
     ("/planet/polar_radius", Required, Number(PLANET_RADIUS)),
     ("/planet/rotation_rate", Required, Number(between(-1.0, 1.0))),
 ];
 
-const CASE: [Row; 19] = [
+const CASE: [Row; 25] = [
     ("/name", Optional, Text),
     ("/atmosphere", Optional, Object),
     ("/atmosphere/type", Required, Name),
     ("/atmosphere/surface_density", Optional, Number(NOT_NEGATIVE)),
     ("/atmosphere/scale_height", Optional, Number(POSITIVE)),
+    ("/density_factor", Optional, Number(NOT_NEGATIVE)),
+    ("/wind", Optional, Object),
+    ("/wind/type", Required, Name),
+    ("/wind/east", Required, Number(WIND)),
+    ("/wind/north", Required, Number(WIND)),
     ("/vehicle", Required, Object),
     ("/vehicle/mass", Required, Number(POSITIVE)),
     ("/vehicle/reference_area", Required, Number(NOT_NEGATIVE)),
@@ -117,13 +139,79 @@ const CASE: [Row; 19] = [
     ("/vehicle/aerodynamics/lift_coefficient", Optional, Number(FINITE)),
     ("/vehicle/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
     ("/control", Optional, Object),
-    ("/control/bank_angle", Optional, Angle(TURN)),
+    ("/control/bank_angle", Optional, Command(TURN)),
+    ("/control/angle_of_attack", Optional, Command(TURN)),
     ("/stop", Optional, Object),
     ("/stop/altitude", Optional, Number(DISTANCE)),
     ("/stop/time", Optional, Number(Range { low: Open(0.0), high: Closed(1e9) })),
     ("/output", Optional, Object),
     ("/solver", Optional, Object),
 ];
+
+/// The fields of the other models.
+fn of_model(name: &str) -> (&'static str, &'static [Row]) {
+    match name {
+        "us76" | "vacuum" => ("/atmosphere", &[("/type", Required, Name)]),
+        "layers" => (
+            "/atmosphere/layers",
+            &[
+                ("", Alternative, Objects),
+                ("/0/base_altitude", Required, Number(DISTANCE)),
+                ("/0/density", Required, Number(NOT_NEGATIVE)),
+                ("/0/scale_height", Required, Number(POSITIVE)),
+            ],
+        ),
+        "preset" => ("/atmosphere", &[("/preset", Alternative, Name)]),
+        "table of air" => (
+            "/atmosphere",
+            &[
+                ("/altitude", Required, Numbers),
+                ("/density", Required, Numbers),
+                ("/temperature", Optional, Numbers),
+                ("/pressure", Optional, Numbers),
+            ],
+        ),
+        "table of wind" => {
+            ("/wind", &[("/altitude", Required, Numbers), ("/east", Required, Numbers), ("/north", Required, Numbers)])
+        }
+        "zonal" => {
+            ("/planet/gravity", &[("/j3", Required, Number(COEFFICIENT)), ("/j4", Required, Number(COEFFICIENT))])
+        }
+        "ballistic" => (
+            "/vehicle/aerodynamics",
+            &[("/ballistic_coefficient", Required, Number(POSITIVE)), ("/lift_to_drag", Optional, Number(FINITE))],
+        ),
+        "mach_table" => (
+            "/vehicle/aerodynamics",
+            &[
+                ("/mach", Required, Numbers),
+                ("/lift_coefficient", Required, Numbers),
+                ("/drag_coefficient", Required, Numbers),
+            ],
+        ),
+        "alpha_mach_table" => (
+            "/vehicle/aerodynamics",
+            &[
+                ("/angle_of_attack", Required, Numbers),
+                ("/mach", Required, Numbers),
+                ("/lift_coefficient", Required, Matrix),
+                ("/drag_coefficient", Required, Matrix),
+            ],
+        ),
+        "schedules" => (
+            "/control/bank_angle",
+            &[
+                ("/type", Required, Name),
+                ("/against", Required, Name),
+                ("/at", Required, Numbers),
+                ("/value", Required, Numbers),
+                ("/interpolation", Optional, Name),
+            ],
+        ),
+        "columns" => ("/output", &[("/columns", Optional, Names)]),
+        _ => panic!("no such model: {name}"),
+    }
+}
 
 const SOLVER: [Row; 2] =
     [("/solver/formulation", Optional, Name), ("/solver/relative_tolerance", Optional, Number(between(1e-14, 1e-3)))];
@@ -194,6 +282,11 @@ pub(crate) fn fields() -> Vec<Field> {
     add("/simulate", &named(flight("eci")), "", &[("/planet/model", Optional, Name)]);
     add("/convert", &named(conversion("eci")), "", &[("/planet/model", Optional, Name)]);
 
+    for (name, request) in models() {
+        let (place, rows) = of_model(name);
+        add("/simulate", &request, place, rows);
+    }
+
     for kind in KINDS {
         for (path, request, state) in
             [("/simulate", flight(kind), "/initial_state"), ("/convert", conversion(kind), "/state")]
@@ -233,7 +326,7 @@ impl Kind {
     /// Values of types that the field does not hold.
     pub(crate) fn mistyped(self) -> Vec<Value> {
         let mut wrong = vec![json!(null)];
-        let number = matches!(self, Number(_) | Angle(_) | Whole | SiderealTime);
+        let number = matches!(self, Number(_) | Angle(_) | Command(_) | Whole | SiderealTime);
         if !number {
             wrong.push(json!(13));
         }
@@ -246,10 +339,10 @@ impl Kind {
         if !matches!(self, Boolean | False) {
             wrong.push(json!(false));
         }
-        if !matches!(self, Vector | Numbers) {
+        if !matches!(self, Vector | Numbers | Matrix | Names | Objects) {
             wrong.push(json!([1, 2, 3]));
         }
-        if !matches!(self, Object) {
+        if !matches!(self, Object | Command(_)) {
             wrong.push(json!({"value": 1}));
         }
         wrong

@@ -150,8 +150,11 @@ async fn csv_has_the_digits_of_the_columns() {
         assert_eq!(rows.len(), times(&json).len());
         for (index, row) in rows.iter().enumerate() {
             // The columns keep the digits in which the service wrote them.
-            let written: Vec<_> = COLUMNS.iter().map(|name| json["trajectory"][name][index].to_string()).collect();
-            assert_eq!(*row, written, "row {index}");
+            let written = |name| match &json["trajectory"][name][index] {
+                Value::Null => String::new(),
+                value => value.to_string(),
+            };
+            assert_eq!(*row, COLUMNS.map(written), "row {index}");
         }
     }
 }

@@ -44,12 +44,14 @@ pub(crate) fn flight(kind: &str) -> Value {
         "epoch": "2026-11-22T12:00:00Z",
         "planet": planet(),
         "atmosphere": {"type": "exponential", "surface_density": 1.2, "scale_height": 7000},
+        "density_factor": 1.1,
+        "wind": {"type": "constant", "east": 12, "north": -5},
         "vehicle": {
             "mass": 700,
             "reference_area": 0.2,
             "aerodynamics": {"type": "constant", "lift_coefficient": 0.2, "drag_coefficient": 0.2},
         },
-        "control": {"bank_angle": 0.8},
+        "control": {"bank_angle": 0.8, "angle_of_attack": 0},
         "initial_state": state(kind),
         "stop": {"altitude": -1e4, "time": 1},
         "output": {"count": 3},
@@ -68,6 +70,90 @@ pub(crate) fn conversion(kind: &str) -> Value {
     })
 }
 
+/// The flight with each of the other models, and what they are.
+pub(crate) fn models() -> Vec<(&'static str, Value)> {
+    let flight = || with(&flight("geodetic"), "/atmosphere", json!({"type": "us76"}));
+    let schedule = |against: &str| json!({"type": "schedule", "against": against, "at": [1, 20], "value": [0.1, -0.2], "interpolation": "step"});
+    vec![
+        ("us76", flight()),
+        ("vacuum", with(&flight(), "/atmosphere", json!({"type": "vacuum"}))),
+        (
+            "layers",
+            with(
+                &flight(),
+                "/atmosphere",
+                json!({"type": "layered_exponential", "layers": [
+                {"base_altitude": 0, "density": 1.225, "scale_height": 7200}]}),
+            ),
+        ),
+        (
+            "preset",
+            with(&flight(), "/atmosphere", json!({"type": "layered_exponential", "preset": "earth_seven_layer"})),
+        ),
+        (
+            "table of air",
+            with(
+                &flight(),
+                "/atmosphere",
+                json!({"type": "table", "altitude": [0, 5e4, 1e5],
+                "density": [1.2, 1e-3, 6e-7], "temperature": [288, 270, 200], "pressure": [1e5, 80, 0.03]}),
+            ),
+        ),
+        (
+            "table of wind",
+            with(&flight(), "/wind", json!({"type": "table", "altitude": [0, 1e4], "east": [5, 30], "north": [0, 5]})),
+        ),
+        (
+            "zonal",
+            with(
+                &flight(),
+                "/planet/gravity",
+                json!({"type": "zonal", "degree": 4, "j2": 1e-3, "j3": -2e-6,
+                "j4": -1e-6}),
+            ),
+        ),
+        (
+            "ballistic",
+            without(
+                &with(
+                    &flight(),
+                    "/vehicle/aerodynamics",
+                    json!({"type": "ballistic", "ballistic_coefficient": 5000,
+                    "lift_to_drag": 0.3}),
+                ),
+                "/vehicle/reference_area",
+            ),
+        ),
+        (
+            "mach_table",
+            with(
+                &flight(),
+                "/vehicle/aerodynamics",
+                json!({"type": "mach_table", "mach": [0.5, 1, 5],
+                "lift_coefficient": [0.1, 0.2, 0.15], "drag_coefficient": [0.3, 0.8, 0.6]}),
+            ),
+        ),
+        (
+            "alpha_mach_table",
+            with(
+                &flight(),
+                "/vehicle/aerodynamics",
+                json!({"type": "alpha_mach_table", "angle_of_attack": [0, 0.5],
+                "mach": [0.5, 1, 5], "lift_coefficient": [[0, 0, 0], [0.2, 0.4, 0.3]],
+                "drag_coefficient": [[0.3, 0.8, 0.6], [0.5, 1, 0.9]]}),
+            ),
+        ),
+        (
+            "schedules",
+            with_all(
+                &flight(),
+                [("/control/bank_angle", schedule("altitude")), ("/control/angle_of_attack", schedule("mach"))],
+            ),
+        ),
+        ("columns", with(&flight(), "/output/columns", json!(["time", "altitude"]))),
+    ]
+}
+
 /// The least that can be flown: a capsule from 120 km.
 pub(crate) fn capsule() -> Value {
     json!({
@@ -83,7 +169,7 @@ pub(crate) fn capsule() -> Value {
 
 fn planet() -> Value {
     json!({"model": "custom", "shape": "ellipsoid", "gravitational_parameter": 3.986e14, "equatorial_radius": 6.378e6,
-        "polar_radius": 6.357e6, "rotation_rate": 7.3e-5})
+        "polar_radius": 6.357e6, "rotation_rate": 7.3e-5, "gravity": {"type": "zonal", "degree": 2, "j2": 1.08e-3}})
 }
 
 /// The request with the value at the pointer, whose parent must be there.

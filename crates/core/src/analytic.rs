@@ -114,6 +114,15 @@ pub enum Fault {
     /// No air.
     #[error("must be greater than 0: the theory is of flight through air, got 0")]
     NoAir,
+    /// No air, by its factor.
+    #[error("must be greater than 0: the theory is of flight through air, got 0")]
+    NoDensity,
+    /// Air without one scale height.
+    #[error("must be exponential: the theory knows one scale height")]
+    NotExponential,
+    /// Coefficients that change during the flight.
+    #[error("must be constant or ballistic: the theory knows constant coefficients")]
+    NotConstant,
     /// The air at entry is thinner than any number.
     #[error("the flight begins so high that the air has no density: the theory is of flight through air")]
     NoAirAtEntry,
@@ -132,18 +141,29 @@ pub struct AnalyticError(pub Vec<Fault>);
 
 impl Solution {
     /// What in a vehicle and its air keeps the theory from applying.
-    pub fn vehicle_faults(self, vehicle: &Vehicle, atmosphere: &Atmosphere) -> Vec<Fault> {
-        let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = vehicle.aerodynamics else { return vec![] };
-        let Atmosphere::Exponential { surface_density, .. } = *atmosphere else { return vec![] };
+    pub fn vehicle_faults(self, vehicle: &Vehicle, atmosphere: &Atmosphere, density_factor: f64) -> Vec<Fault> {
         let ballistic = self == Self::SteepBallistic;
-        let faults = [
-            (!ballistic && lift_coefficient == 0.0).then_some(Fault::NoLift),
-            (ballistic && lift_coefficient != 0.0).then_some(Fault::Lift { lift_coefficient }),
-            (drag_coefficient == 0.0).then_some(Fault::NoDrag),
-            (vehicle.reference_area == 0.0).then_some(Fault::NoArea),
-            (surface_density == 0.0).then_some(Fault::NoAir),
-        ];
-        faults.into_iter().flatten().collect()
+        let of_lift = |lift_coefficient: f64| {
+            let without = (!ballistic && lift_coefficient == 0.0).then_some(Fault::NoLift);
+            without.or((ballistic && lift_coefficient != 0.0).then_some(Fault::Lift { lift_coefficient }))
+        };
+        let of_vehicle = match vehicle.aerodynamics {
+            Aerodynamics::Constant { lift_coefficient, drag_coefficient } => [
+                of_lift(lift_coefficient),
+                (drag_coefficient == 0.0).then_some(Fault::NoDrag),
+                (vehicle.reference_area == 0.0).then_some(Fault::NoArea),
+            ],
+            Aerodynamics::Ballistic { lift_to_drag, .. } => [of_lift(lift_to_drag), None, None],
+            Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => [Some(Fault::NotConstant), None, None],
+        };
+        let of_air = match *atmosphere {
+            Atmosphere::Exponential { surface_density, .. } => (surface_density == 0.0).then_some(Fault::NoAir),
+            Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => {
+                Some(Fault::NotExponential)
+            }
+        };
+        let of_factor = (density_factor == 0.0).then_some(Fault::NoDensity);
+        of_vehicle.into_iter().chain([of_air, of_factor]).flatten().collect()
     }
 
     /// Whether the theory is of a descent, and ends with it.
@@ -189,7 +209,7 @@ impl Theory {
         let eta_by_density = reference_area * drag_coefficient / (2.0 * mass * beta);
         let eta_e = eta_by_density * case.forces().loads(0.0, &case.initial_state).density;
 
-        let mut faults = solution.vehicle_faults(&case.vehicle, &case.atmosphere);
+        let mut faults = solution.vehicle_faults(&case.vehicle, &case.atmosphere, case.density_factor);
         if faults.is_empty() && eta_e == 0.0 {
             faults.push(Fault::NoAirAtEntry);
         }

@@ -2,6 +2,7 @@
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use reentry::motion::Switch;
 use reentry::simulate::SimulationError;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -125,7 +126,7 @@ impl ApiError {
 
     /// The one table: status, type and title.
     fn class(&self) -> (StatusCode, &'static str, &'static str) {
-        use SimulationError::{Interrupted, Overflow, Singularity, StepLimit, TooStiff};
+        use SimulationError::{Chatter, Interrupted, Overflow, Singularity, StepLimit, TooStiff};
         use StatusCode as Status;
         match self {
             Self::NotJson(_) | Self::CaseNotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
@@ -149,6 +150,9 @@ impl ApiError {
                 StepLimit { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-limit", "Too many steps"),
                 Singularity { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/singularity", "Singular equations"),
                 TooStiff { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-size", "Too stiff to integrate"),
+                Chatter { .. } => {
+                    (Status::UNPROCESSABLE_ENTITY, "/problems/chattering-schedule", "Schedule undoes itself")
+                }
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
                 Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
             },
@@ -172,6 +176,14 @@ impl ApiError {
             ),
             Self::Flight(SimulationError::Singularity { .. }) => {
                 one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
+            }
+            Self::Flight(SimulationError::Chatter { switch, .. }) => {
+                let advice = "let the angle change along a line (\"interpolation\": \"linear\"), or against another quantity";
+                match switch {
+                    Switch::BankAngle => one("/control/bank_angle", advice.to_owned()),
+                    Switch::AngleOfAttack => one("/control/angle_of_attack", advice.to_owned()),
+                    _ => Vec::new(),
+                }
             }
             _ => Vec::new(),
         }

@@ -8,6 +8,9 @@ use utoipa::OpenApi;
 use crate::error::Problem;
 use crate::wire::batch::MOST_CASES;
 use crate::wire::epoch::RFC3339_PATTERN;
+use crate::wire::reader::MOST_ENTRIES;
+use crate::wire::scenario::Output;
+use crate::wire::trajectory::COLUMNS;
 
 /// The frame of the document; the router adds the paths.
 #[derive(OpenApi)]
@@ -31,7 +34,7 @@ const ALTERNATIVES: [(&str, &[&str]); 5] = [
     ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),
     ("InertialFlightPath", &["radius", "altitude"]),
     ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
-    ("Output", &["samples_per_step", "interval", "count", "times", "trajectory"]),
+    ("LayeredAtmosphere", &["layers", "preset"]),
 ];
 
 /// Every failure that every endpoint may answer with.
@@ -143,27 +146,101 @@ fn close(name: &str, schema: &mut Map<String, Value>) {
         schema.insert("allOf".to_owned(), choices.into_iter().map(|choice| json!({"oneOf": choice})).collect());
     }
     refine(name, schema);
-    if name == "Planet" {
-        let numbers = ["gravitational_parameter", "equatorial_radius", "polar_radius", "rotation_rate"];
-        let absent: Map<_, _> = numbers.iter().map(|name| ((*name).to_owned(), json!(false))).collect();
-        let custom = json!({"properties": {"model": {"const": "custom"}}, "required": ["model"]});
-        schema.insert("if".to_owned(), custom);
-        schema.insert("then".to_owned(), json!({"required": numbers}));
-        schema.insert("else".to_owned(), json!({"properties": absent}));
+    for (keyword, condition) in conditions(name) {
+        schema.insert(keyword.to_owned(), condition);
+    }
+}
+
+/// What a field asks of its neighbours, which the types do not tell.
+fn conditions(name: &str) -> Vec<(&'static str, Value)> {
+    let is = |field: &str, value: &str| json!({"properties": {(field): {"const": value}}, "required": [field]});
+    match name {
+        "Planet" => {
+            let numbers = ["gravitational_parameter", "equatorial_radius", "polar_radius", "rotation_rate"];
+            let absent: Map<_, _> = numbers.iter().map(|name| ((*name).to_owned(), json!(false))).collect();
+            let up_to = |degree: usize, name: &str| {
+                let least = json!({"properties": {"degree": {"minimum": degree}}, "required": ["degree"]});
+                json!({"if": least, "then": {"required": [name]}})
+            };
+            let coefficients = json!({"required": ["j2"], "allOf": [up_to(3, "j3"), up_to(4, "j4")]});
+            let gravity = json!({"if": is("type", "zonal"), "then": coefficients});
+            vec![
+                ("if", is("model", "custom")),
+                ("then", json!({"required": numbers, "properties": {"gravity": gravity}})),
+                ("else", json!({"properties": absent})),
+            ]
+        }
+        "ZonalGravity" => {
+            let below = |degree: usize, name: &str| {
+                json!({"if": {"properties": {"degree": {"exclusiveMaximum": degree}}},
+                    "then": {"properties": {(name): false}}})
+            };
+            // Without a degree it is 2, and the condition holds.
+            vec![("allOf", json!([below(3, "j3"), below(4, "j4")]))]
+        }
+        "Vehicle" => vec![
+            ("if", json!({"properties": {"aerodynamics": is("type", "ballistic")}})),
+            ("then", json!({"properties": {"reference_area": false}})),
+            ("else", json!({"required": ["reference_area"]})),
+        ],
+        "Schedule" => {
+            let at = |bound: Value| json!({"properties": {"at": {"items": bound}}});
+            vec![
+                ("if", is("against", "altitude")),
+                ("then", at(json!({"minimum": -1e12, "maximum": 1e12}))),
+                ("else", at(json!({"minimum": 0}))),
+            ]
+        }
+        "Output" => {
+            // Columns alone are of four rows a step; without a trajectory there are none.
+            let columns = json!({"required": ["columns"]});
+            let without = json!({"not": {"required": ["columns"]}});
+            let way = json!({"anyOf": Output::WAYS.map(|way| json!({"required": [way]}))});
+            vec![
+                ("if", way),
+                ("then", json!({"oneOf": Output::WAYS.map(|way| json!({"required": [way]}))})),
+                ("else", columns),
+                ("dependentSchemas", json!({"trajectory": without})),
+            ]
+        }
+        _ => Vec::new(),
     }
 }
 
 /// Bounds of elements and of words, which the types do not tell.
 fn refine(name: &str, schema: &mut Map<String, Value>) {
     let bounded = |least: f64, greatest: f64| json!({"minimum": least, "maximum": greatest});
+    let [distance, wind, turn] = [bounded(-1e12, 1e12), bounded(-1e4, 1e4), bounded(-360.0, 360.0)];
+    let [positive, not_negative] = [json!({"exclusiveMinimum": 0}), json!({"minimum": 0})];
+    let row = |elements: &Value| json!({"minItems": 1, "maxItems": MOST_ENTRIES, "items": elements});
     let refinements = match name {
         "Ecef" | "Eci" => vec![
             ("position", json!({"minItems": 3, "maxItems": 3})),
-            ("position/items", bounded(-1e12, 1e12)),
+            ("position/items", distance),
             ("velocity", json!({"minItems": 3, "maxItems": 3})),
             ("velocity/items", if name == "Ecef" { bounded(-1e6, 1e6) } else { json!({}) }),
         ],
-        "Output" => vec![("times/items", json!({"minimum": 0})), ("trajectory", json!({"enum": [false]}))],
+        "Output" => vec![
+            ("times/items", not_negative),
+            ("trajectory", json!({"enum": [false]})),
+            ("columns", json!({"minItems": 1, "maxItems": COLUMNS.len(), "uniqueItems": true})),
+            ("columns/items", json!({"enum": COLUMNS.each_ref().map(|column| column.name)})),
+        ],
+        "TableAtmosphere" => vec![
+            ("altitude/items", distance),
+            ("density/items", positive.clone()),
+            ("temperature/items", positive.clone()),
+            ("pressure/items", positive),
+        ],
+        "TableWind" => vec![("altitude/items", distance), ("east/items", wind.clone()), ("north/items", wind)],
+        "MachTable" => vec![("mach/items", not_negative.clone()), ("drag_coefficient/items", not_negative)],
+        "AlphaMachTable" => vec![
+            ("angle_of_attack/items", turn),
+            ("mach/items", not_negative.clone()),
+            ("lift_coefficient/items", row(&json!({"type": "number"}))),
+            ("drag_coefficient/items", row(&json!({"type": "number", "minimum": 0}))),
+        ],
+        "Schedule" => vec![("type", json!({"enum": ["schedule"]})), ("value/items", turn)],
         "SimulateRequest" | "ConvertRequest" | "AnalyticRequest" => {
             vec![("epoch", json!({"pattern": RFC3339_PATTERN}))]
         }
@@ -193,6 +270,8 @@ fn add_examples(paths: &mut Map<String, Value>) {
             "value": example(include_str!("../../../openapi/examples/target_1.json"))},
         "target_2": {"summary": "TARGET case 2: a banked, lifting vehicle",
             "value": example(include_str!("../../../openapi/examples/target_2.json"))},
+        "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
+            "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
         "impulse": {"summary": "IMPULSE: a missile's vehicle after burnout, from inertial vectors",
             "value": example(include_str!("../../../openapi/examples/impulse.json"))},
     });

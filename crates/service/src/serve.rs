@@ -2,6 +2,7 @@
 
 use std::future::Future;
 
+use reentry::atmosphere::us76;
 use tokio::net::TcpListener;
 use tokio::sync::oneshot;
 
@@ -17,6 +18,8 @@ pub async fn serve(
     state: AppState,
     shutdown: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
+    // Its table is made with the first density, which no request is to wait for.
+    us76::density(0.0);
     let grace = state.config.grace;
     let (draining, drained) = oneshot::channel();
     let drain = {

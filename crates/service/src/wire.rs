@@ -7,10 +7,12 @@ pub mod json;
 pub mod reader;
 
 pub mod atmosphere;
+pub mod control;
 pub mod epoch;
 pub mod planet;
 pub mod state;
 pub mod vehicle;
+pub mod wind;
 
 pub mod analytic;
 pub mod batch;

@@ -118,20 +118,24 @@ impl<A: Answer> Run<A> {
     fn many(&self, cases: &[&RawValue], output: &mut Output) -> Result<(), Failure> {
         let bar = progress(cases.len(), output);
         let mut ending = Ok(());
-        let mut header = Header::Wanted;
+        let mut header = None;
         let work = |case: &&RawValue, interrupt: &AtomicBool| {
             let tree = json::parse(case.get().as_bytes()).map_err(ApiError::CaseNotJson)?;
             self.answer(tree, interrupt)
         };
         compute::in_order(cases, work, |index, answer| {
             bar.inc(1);
+            let answer = match self.format {
+                Format::Csv => answer.and_then(|csv| table(index, &csv, &mut header)),
+                Format::Json | Format::Ndjson => answer,
+            };
             if let Err(error) = &answer {
                 let place = format!("{}: case {index}{}", self.place, name(cases[index]));
                 bar.suspend(|| tell(&told(&place, error)));
                 ending = Err(Failure::Case);
             }
             let lines = match (answer, self.format) {
-                (Ok(csv), Format::Csv) => table(index, &csv, &mut header),
+                (Ok(table), Format::Csv) => table,
                 (Err(_), Format::Csv) => return ControlFlow::Continue(()),
                 (Ok(line), _) => with_line_end(line),
                 (Err(error), _) => with_line_end(error.problem().to_json()),
@@ -191,45 +195,49 @@ fn with_line_end(mut text: Vec<u8>) -> Vec<u8> {
     text
 }
 
-/// Whether the table still needs its header.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Header {
-    Wanted,
-    Written,
-}
-
-/// The lines of a case with its index before them, the header on the first of all tables alone.
-fn table(index: usize, csv: &[u8], header: &mut Header) -> Vec<u8> {
+/// The lines of a case with its index before them, the header, once it is written, on the first of all tables alone.
+///
+/// # Errors
+/// When the case has other columns than those before it.
+fn table(index: usize, csv: &[u8], header: &mut Option<Vec<u8>>) -> Result<Vec<u8>, ApiError> {
     let mut table = Vec::with_capacity(csv.len() + csv.len() / 16);
     let mut lines = csv.split_inclusive(|byte| *byte == b'\n');
     let names = lines.next().unwrap_or_default();
-    if *header == Header::Wanted {
-        table.extend_from_slice(b"case,");
-        table.extend_from_slice(names);
-        *header = Header::Written;
+    match header {
+        Some(written) if *written != names => {
+            let detail =
+                "must be the same in every case of a table: the models of this case have other columns than the first";
+            return Err(ApiError::Invalid(vec![Fault::new("/output/columns", detail)]));
+        }
+        Some(_) => {}
+        None => {
+            table.extend_from_slice(b"case,");
+            table.extend_from_slice(names);
+            *header = Some(names.to_owned());
+        }
     }
     let start = format!("{index},");
     for line in lines {
         table.extend_from_slice(start.as_bytes());
         table.extend_from_slice(line);
     }
-    table
+    Ok(table)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Header, table, told};
+    use super::{table, told};
     use crate::error::ApiError;
     use crate::wire::reader::Fault;
 
     #[test]
     fn tables_become_one_table() {
-        let mut header = Header::Wanted;
-        assert_eq!(
-            table(0, b"time,speed\n0.0,7.0\n1.0,6.0\n", &mut header),
-            b"case,time,speed\n0,0.0,7.0\n0,1.0,6.0\n"
-        );
-        assert_eq!(table(12, b"time,speed\n0.0,7.0\n", &mut header), b"12,0.0,7.0\n");
+        let mut header = None;
+        let mut line = |index, csv: &[u8]| table(index, csv, &mut header).ok();
+        let first = line(0, b"time,speed\n0.0,7.0\n1.0,6.0\n");
+        assert_eq!(first.as_deref(), Some(&b"case,time,speed\n0,0.0,7.0\n0,1.0,6.0\n"[..]));
+        assert_eq!(line(12, b"time,speed\n0.0,7.0\n").as_deref(), Some(&b"12,0.0,7.0\n"[..]));
+        assert_eq!(line(13, b"time,mach\n0.0,7.0\n"), None);
     }
 
     #[test]

@@ -14,7 +14,9 @@ use super::scenario::{Job, SimulateRequest, Wanted};
 use super::sensitivities::Sensitivities;
 use super::state::State;
 use super::trajectory::{Extras, Warning};
+use super::vehicle::Aerodynamics;
 use super::verification::Verification;
+use super::wind::Wind;
 
 /// The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
@@ -106,6 +108,10 @@ impl AnalyticJob {
         })?;
         let sampling = request.output.sampling();
         let mut misplaced = request.beyond_rows(wanted);
+        if request.output.columns.is_some() {
+            let detail = "must be left out: this answer has columns of its own";
+            misplaced.push(Fault::new("/output/columns", detail));
+        }
         if sampling.is_none() {
             let detail = "must not be false: the predictions are made at the rows of the flight";
             misplaced.push(Fault::new("/output/trajectory", detail));
@@ -117,7 +123,8 @@ impl AnalyticJob {
             },
             Err(faults) => {
                 let (vehicle, atmosphere) = (request.vehicle.to_core(), request.atmosphere.to_core());
-                (Err(faults), Err(solution.to_core().vehicle_faults(&vehicle, &atmosphere)))
+                let theory = solution.to_core().vehicle_faults(&vehicle, &atmosphere, request.density_factor);
+                (Err(faults), Err(theory))
             }
         };
         match (scenario, theory) {
@@ -136,11 +143,16 @@ impl AnalyticJob {
 /// What keeps a theory from applying, at the field of the request that it concerns.
 fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
     let has_angle = matches!(request.initial_state, State::PlanetRelative(_) | State::Geodetic(_));
+    let by_ratios = matches!(request.vehicle.aerodynamics, Aerodynamics::Ballistic(_));
     let pointer = match fault {
+        TheoryFault::NoLift | TheoryFault::Lift { .. } if by_ratios => "/vehicle/aerodynamics/lift_to_drag",
         TheoryFault::NoLift | TheoryFault::Lift { .. } => "/vehicle/aerodynamics/lift_coefficient",
         TheoryFault::NoDrag => "/vehicle/aerodynamics/drag_coefficient",
         TheoryFault::NoArea => "/vehicle/reference_area",
+        TheoryFault::NotConstant => "/vehicle/aerodynamics/type",
         TheoryFault::NoAir => "/atmosphere/surface_density",
+        TheoryFault::NotExponential => "/atmosphere/type",
+        TheoryFault::NoDensity => "/density_factor",
         TheoryFault::NoDescent { .. } if has_angle => "/initial_state/flight_path_angle",
         TheoryFault::NoDescent { .. } | TheoryFault::NoAirAtEntry => "/initial_state",
     };
@@ -279,8 +291,11 @@ impl AnalyticResponse {
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
         let mut warnings = Warning::of(&request, flight, &extras);
-        if request.control.bank_angle != 0.0 {
+        if request.control.bank_angle.is_given() {
             warnings.push(Warning::bank_left_out());
+        }
+        if request.wind.as_ref().is_some_and(Wind::blows) {
+            warnings.push(Warning::wind_left_out());
         }
         Self {
             name: request.name,

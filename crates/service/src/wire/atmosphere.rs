@@ -1,19 +1,35 @@
 //! The atmosphere of a request.
 
-use reentry::atmosphere::Atmosphere as CoreAtmosphere;
+use std::sync::Arc;
+
+use reentry::atmosphere::{Atmosphere as CoreAtmosphere, Layer as CoreLayer, Layers as CoreLayers, Table as CoreTable};
 use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::reader::Object;
 
-/// The atmosphere, which turns with the planet.
-#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+/// The atmosphere, which turns with the planet; altitudes are those along the radius vector.
+#[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
-#[schema(discriminator(property_name = "type", mapping(("exponential" = "#/components/schemas/ExponentialAtmosphere"))))]
+#[schema(discriminator(property_name = "type", mapping(
+    ("exponential" = "#/components/schemas/ExponentialAtmosphere"),
+    ("us76" = "#/components/schemas/Us76Atmosphere"),
+    ("layered_exponential" = "#/components/schemas/LayeredAtmosphere"),
+    ("table" = "#/components/schemas/TableAtmosphere"),
+    ("vacuum" = "#/components/schemas/Vacuum"),
+)))]
 pub enum Atmosphere {
     /// One scale height.
     Exponential(ExponentialAtmosphere),
+    /// The U.S. Standard Atmosphere, 1976.
+    Us76(Us76Atmosphere),
+    /// Layers of one scale height each.
+    Layered(LayeredAtmosphere),
+    /// A table.
+    Table(TableAtmosphere),
+    /// No air.
+    Vacuum(Vacuum),
 }
 
 /// Density ρ₀ e^(-h/H) at the altitude h along the radius vector.
@@ -30,27 +46,186 @@ pub struct ExponentialAtmosphere {
     pub scale_height: f64,
 }
 
+/// The U.S. Standard Atmosphere, 1976, to 1000 km, with temperature, pressure and speed of sound.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct Us76Atmosphere {
+    /// The kind of atmosphere.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+}
+
+/// Density ρ e^(-(h - base)/H) in each of several layers. Exactly one of `layers` and `preset`.
+// The layers stand here for the schema; what flies is `core`.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct LayeredAtmosphere {
+    /// The kind of atmosphere.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// From the lowest to the highest; the first reaches down, the last up without end.
+    #[schema(required = false, value_type = Vec<Layer>, min_items = 1, max_items = 10_000)]
+    pub layers: Option<Vec<Layer>>,
+    /// Layers whose numbers are known.
+    #[schema(required = false, value_type = LayersPreset)]
+    pub preset: Option<LayersPreset>,
+    /// The same, for the core.
+    #[serde(skip)]
+    #[schema(ignore)]
+    pub core: Arc<CoreLayers>,
+}
+
+/// A layer, up to the base of the next.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct Layer {
+    /// Where it begins, m; greater than that of the layer before it.
+    #[schema(minimum = -1e12, maximum = 1e12)]
+    pub base_altitude: f64,
+    /// ρ, there, kg/m³.
+    #[schema(minimum = 0)]
+    pub density: f64,
+    /// H, m.
+    #[schema(exclusive_minimum = 0)]
+    pub scale_height: f64,
+}
+
+/// The layers whose numbers are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LayersPreset {
+    /// The Earth's, in seven layers.
+    EarthSevenLayer,
+}
+
+/// The air by altitude, smooth between the entries; all lists have as many.
+// The numbers stand here for the schema; what flies is `core`.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct TableAtmosphere {
+    /// The kind of atmosphere.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Along the radius vector, ascending, m.
+    #[schema(min_items = 2, max_items = 10_000)]
+    pub altitude: Vec<f64>,
+    /// kg/m³. Beyond the altitudes its logarithm goes on in a straight line.
+    #[schema(min_items = 2, max_items = 10_000)]
+    pub density: Vec<f64>,
+    /// K; with it there are Mach numbers.
+    #[schema(required = false, value_type = Vec<f64>, min_items = 2, max_items = 10_000)]
+    pub temperature: Option<Vec<f64>>,
+    /// Pa.
+    #[schema(required = false, value_type = Vec<f64>, min_items = 2, max_items = 10_000)]
+    pub pressure: Option<Vec<f64>>,
+    /// The same, for the core.
+    #[serde(skip)]
+    #[schema(ignore)]
+    pub core: Arc<CoreTable>,
+}
+
+/// No air.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct Vacuum {
+    /// The kind of atmosphere.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+}
+
 impl Atmosphere {
     pub(super) fn read(object: &mut Object) -> Option<Self> {
-        object.choice("type", &[("exponential", ())])?;
-        let CoreAtmosphere::Exponential { surface_density, scale_height } = CoreAtmosphere::EARTH_JAMESON;
-        let surface_density = object.number_or("surface_density", Bound::NON_NEGATIVE, surface_density);
-        let scale_height = object.number_or("scale_height", Bound::POSITIVE, scale_height);
-        Some(Self::Exponential(ExponentialAtmosphere {
-            kind: "exponential",
-            surface_density: surface_density?,
-            scale_height: scale_height?,
-        }))
+        let read = object.choice::<fn(&mut Object) -> Option<Self>>(
+            "type",
+            &[
+                ("exponential", |object| ExponentialAtmosphere::read(object).map(Self::Exponential)),
+                ("us76", |_| Some(Self::Us76(Us76Atmosphere { kind: "us76" }))),
+                ("layered_exponential", |object| LayeredAtmosphere::read(object).map(Self::Layered)),
+                ("table", |object| TableAtmosphere::read(object).map(Self::Table)),
+                ("vacuum", |_| Some(Self::Vacuum(Vacuum { kind: "vacuum" }))),
+            ],
+        )?;
+        read(object)
     }
 
-    pub(super) fn to_core(self) -> CoreAtmosphere {
-        let Self::Exponential(ExponentialAtmosphere { surface_density, scale_height, .. }) = self;
-        CoreAtmosphere::Exponential { surface_density, scale_height }
+    pub(super) fn to_core(&self) -> CoreAtmosphere {
+        match self {
+            Self::Exponential(ExponentialAtmosphere { surface_density, scale_height, .. }) => {
+                CoreAtmosphere::Exponential { surface_density: *surface_density, scale_height: *scale_height }
+            }
+            Self::Us76(_) => CoreAtmosphere::Us76,
+            Self::Layered(layered) => CoreAtmosphere::Layers(Arc::clone(&layered.core)),
+            Self::Table(table) => CoreAtmosphere::Table(Arc::clone(&table.core)),
+            Self::Vacuum(_) => CoreAtmosphere::Vacuum,
+        }
     }
 
     /// Its `type`.
-    pub fn kind(self) -> &'static str {
-        let Self::Exponential(exponential) = self;
-        exponential.kind
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Exponential(ExponentialAtmosphere { kind, .. })
+            | Self::Us76(Us76Atmosphere { kind })
+            | Self::Layered(LayeredAtmosphere { kind, .. })
+            | Self::Table(TableAtmosphere { kind, .. })
+            | Self::Vacuum(Vacuum { kind }) => kind,
+        }
+    }
+}
+
+impl ExponentialAtmosphere {
+    fn read(object: &mut Object) -> Option<Self> {
+        // Those of `CoreAtmosphere::EARTH_JAMESON`.
+        let surface_density = object.number_or("surface_density", Bound::NON_NEGATIVE, 1.547_93);
+        let scale_height = object.number_or("scale_height", Bound::POSITIVE, 6935.0);
+        Some(Self { kind: "exponential", surface_density: surface_density?, scale_height: scale_height? })
+    }
+}
+
+impl LayeredAtmosphere {
+    fn read(object: &mut Object) -> Option<Self> {
+        let layers = object.has("layers").then(|| {
+            let layers = object.objects("layers", Layer::read)?;
+            let bases: Vec<_> = layers.iter().map(|layer| layer.base_altitude).collect();
+            object.ascending("layers", "/base_altitude", &bases).then_some(layers)
+        });
+        let presets = [("earth_seven_layer", LayersPreset::EarthSevenLayer)];
+        let preset = object.has("preset").then(|| object.choice("preset", &presets));
+        object.exactly_one(&["layers", "preset"])?;
+        let (layers, preset) = (layers.flatten(), preset.flatten());
+        let core = match (&layers, preset) {
+            (Some(layers), _) => CoreLayers::new(layers.iter().copied().map(Layer::to_core).collect()),
+            (None, Some(LayersPreset::EarthSevenLayer)) => Ok(CoreLayers::earth_seven_layer()),
+            (None, None) => return None,
+        };
+        let core = Arc::new(object.sound(core)?);
+        Some(Self { kind: "layered_exponential", layers, preset, core })
+    }
+}
+
+impl Layer {
+    fn read(object: &mut Object) -> Option<Self> {
+        let base_altitude = object.number("base_altitude", Bound::DISTANCE);
+        let density = object.number("density", Bound::NON_NEGATIVE);
+        let scale_height = object.number("scale_height", Bound::POSITIVE);
+        Some(Self { base_altitude: base_altitude?, density: density?, scale_height: scale_height? })
+    }
+
+    fn to_core(self) -> CoreLayer {
+        let Self { base_altitude, density, scale_height } = self;
+        CoreLayer { base_altitude, density, scale_height }
+    }
+}
+
+impl TableAtmosphere {
+    fn read(object: &mut Object) -> Option<Self> {
+        let altitude = object.entries("altitude", Bound::DISTANCE, 2);
+        let altitude = altitude.filter(|altitude| object.ascending("altitude", "", altitude));
+        let density = object.entries("density", Bound::POSITIVE, 2);
+        let temperature = object.optional_entries("temperature", Bound::POSITIVE, 2);
+        let pressure = object.optional_entries("pressure", Bound::POSITIVE, 2);
+        let sound = object.equally_long("altitude", &["density", "temperature", "pressure"]);
+        let (altitude, density) = (altitude?, density?);
+        let lost = object.has("temperature") && temperature.is_none() || object.has("pressure") && pressure.is_none();
+        if lost || !sound {
+            return None;
+        }
+        let core = CoreTable::new(&altitude, &density, temperature.as_deref(), pressure.as_deref());
+        let core = Arc::new(object.sound(core)?);
+        Some(Self { kind: "table", altitude, density, temperature, pressure, core })
     }
 }

@@ -1,9 +1,11 @@
 //! Dates and the clock face of sidereal time.
 
+use std::fmt;
+
 use hifitime::{Epoch, Unit};
 use reentry::coordinates::earth_rotation_angle;
 use reentry::planet::Planet;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::Value;
 use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, Type};
 use utoipa::openapi::{RefOr, Schema};
@@ -68,6 +70,7 @@ fn clock_seconds(clock: &str) -> Option<f64> {
 /// The instant t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
+    epoch: Epoch,
     /// Days (of 86 400 s) since 2000 January 1, 12 h UTC.
     days: f64,
 }
@@ -83,7 +86,18 @@ impl Instant {
         let epoch = Epoch::from_gregorian_str(&text).map_err(|_| fault())?;
         let noon_2000 = Epoch::from_gregorian_utc(2000, 1, 1, 12, 0, 0, 0);
         let elapsed = epoch.to_utc_duration() - noon_2000.to_utc_duration();
-        Ok(Self { days: elapsed.to_unit(Unit::Day) })
+        Ok(Self { epoch, days: elapsed.to_unit(Unit::Day) })
+    }
+
+    /// The time so many seconds later; none after the year 9999, where RFC 3339 ends.
+    ///
+    /// Days have 86 400 s: a leap second during the flight is not counted.
+    pub fn utc(self, seconds: f64) -> Option<Utc> {
+        let rounding = Unit::Nanosecond * 500;
+        let (year, month, day, hours, minutes, seconds, nanoseconds) =
+            (self.epoch + Unit::Second * seconds + rounding).to_gregorian_utc();
+        let time = Utc { date: (year, month, day), time: (hours, minutes, seconds), microseconds: nanoseconds / 1000 };
+        (0..=9999).contains(&year).then_some(time)
     }
 
     /// The seconds since the frames were aligned; none if the planet does not rotate.
@@ -92,6 +106,27 @@ impl Instant {
     pub fn sidereal_time(self, planet: &Planet) -> Option<f64> {
         let seconds = earth_rotation_angle(self.days) / planet.rotation_rate;
         seconds.is_finite().then_some(seconds)
+    }
+}
+
+/// A time of day in UTC, to the microsecond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Utc {
+    date: (i32, u8, u8),
+    time: (u8, u8, u8),
+    microseconds: u32,
+}
+
+impl fmt::Display for Utc {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { date: (year, month, day), time: (hours, minutes, seconds), microseconds } = self;
+        write!(f, "{year:04}-{month:02}-{day:02}T{hours:02}:{minutes:02}:{seconds:02}.{microseconds:06}Z")
+    }
+}
+
+impl Serialize for Utc {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
@@ -122,4 +157,31 @@ fn is_offset(zone: &str) -> bool {
 fn has_form(text: &str, pattern: &str) -> bool {
     let like = |(byte, pattern): (u8, u8)| if pattern == b'0' { byte.is_ascii_digit() } else { byte == pattern };
     text.len() == pattern.len() && text.bytes().zip(pattern.bytes()).all(like)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::Instant;
+
+    #[test]
+    fn seconds_later_are_told_to_the_microsecond_on_days_of_86400_seconds() {
+        for (start, seconds, expected) in [
+            ("2026-11-22T12:00:00Z", 0.0, Some("2026-11-22T12:00:00.000000Z")),
+            ("2026-11-22T12:00:00Z", 0.000_000_499, Some("2026-11-22T12:00:00.000000Z")),
+            ("2026-11-22T12:00:00Z", 0.000_000_501, Some("2026-11-22T12:00:00.000001Z")),
+            ("2026-11-22T12:00:00+01:00", 86_400.25, Some("2026-11-23T11:00:00.250000Z")),
+            ("2024-02-28T23:59:59.5Z", 0.5, Some("2024-02-29T00:00:00.000000Z")),
+            ("2016-12-31T23:59:59Z", 1.0, Some("2017-01-01T00:00:00.000000Z")),
+            ("2016-12-31T23:59:60Z", 2.0, Some("2017-01-01T00:00:01.000000Z")),
+            ("0000-01-01T00:00:00Z", 1.0, Some("0000-01-01T00:00:01.000000Z")),
+            ("9999-12-31T23:59:59Z", 0.999, Some("9999-12-31T23:59:59.999000Z")),
+            ("9999-12-31T23:59:59Z", 1.0, None),
+            ("9999-12-31T23:59:59Z", 1e9, None),
+        ] {
+            let utc = Instant::read(&json!(start)).unwrap().utc(seconds).map(|utc| utc.to_string());
+            assert_eq!(utc.as_deref(), expected, "{start} and {seconds} s");
+        }
+    }
 }

@@ -1,5 +1,8 @@
 //! Reads a JSON tree field by field, notes every fault with its pointer, and fills in defaults.
 
+use std::ops::RangeInclusive;
+
+use reentry::interpolation::TableError;
 use reentry::scenario::Bound;
 use serde_json::{Map, Number, Value, json};
 
@@ -37,6 +40,12 @@ pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut Object) -> Option<T>) ->
 
 /// Faults that are reported one by one; a list of numbers can have half a million of them.
 const MOST_FAULTS: usize = 1000;
+
+/// The greatest number of entries of a list in a model: a table, a schedule, layers.
+pub const MOST_ENTRIES: usize = 10_000;
+
+/// The greatest number of entries of a matrix.
+pub const MOST_ELEMENTS: usize = 100_000;
 
 /// What all objects of a request share.
 struct Context {
@@ -86,6 +95,11 @@ impl Object<'_> {
     pub fn fault<T>(&mut self, detail: impl Into<String>) -> Option<T> {
         self.context.note(self.pointer.clone(), detail.into());
         None
+    }
+
+    /// What the core made of numbers that were read, or its own fault with them, noted of this object as a whole.
+    pub fn sound<T>(&mut self, made: Result<T, TableError>) -> Option<T> {
+        made.map_err(|error| self.fault::<T>(error.to_string())).ok()
     }
 
     /// Whether the request gives the field.
@@ -141,12 +155,22 @@ impl Object<'_> {
 
     /// A whole number from `least` on.
     pub fn whole_number(&mut self, name: &'static str, least: usize) -> Option<usize> {
+        self.whole_number_in(name, least..=usize::MAX, &format!("of at least {least}"))
+    }
+
+    /// A whole number between two, with a default.
+    pub fn whole_number_or(&mut self, name: &'static str, [least, most]: [usize; 2], default: usize) -> Option<usize> {
+        self.fill(name, json!(default));
+        self.whole_number_in(name, least..=most, &format!("between {least} and {most}"))
+    }
+
+    fn whole_number_in(&mut self, name: &'static str, range: RangeInclusive<usize>, which: &str) -> Option<usize> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let shown = shown(value);
-        let whole = value.as_number().map(|number| whole(number).filter(|whole| *whole >= least));
+        let whole = value.as_number().map(|number| whole(number).filter(|whole| range.contains(whole)));
         self.check(name, whole.ok_or(format!("must be a whole number, got {kind}")), |whole| {
-            whole.ok_or(format!("must be a whole number of at least {least}, got {shown}"))
+            whole.ok_or(format!("must be a whole number {which}, got {shown}"))
         })
     }
 
@@ -162,30 +186,175 @@ impl Object<'_> {
 
     /// A list of numbers.
     pub fn numbers(&mut self, name: &'static str, bound: Bound) -> Option<Vec<f64>> {
+        self.list(name, [0, usize::MAX], "numbers", |element| bounded(element, bound))
+    }
+
+    /// The numbers of a column of a table, `least` or more.
+    pub fn entries(&mut self, name: &'static str, bound: Bound, least: usize) -> Option<Vec<f64>> {
+        self.list(name, [least, MOST_ENTRIES], "numbers", |element| bounded(element, bound))
+    }
+
+    /// The numbers of a column of a table that may be left out, `least` or more.
+    pub fn optional_entries(&mut self, name: &'static str, bound: Bound, least: usize) -> Option<Vec<f64>> {
+        if self.has(name) { self.entries(name, bound, least) } else { None }
+    }
+
+    /// The angles of a column of a table, in the request's unit, one or more; the bound is in radians.
+    pub fn angles(&mut self, name: &'static str, bound: Bound) -> Option<Vec<f64>> {
+        let unit = self.context.unit;
+        self.list(name, [1, MOST_ENTRIES], "numbers", |element| bounded_angle(element, bound, unit))
+    }
+
+    /// Rows of numbers, one or more, in each as many as there are in the list `along`, where there is one.
+    pub fn matrix(&mut self, name: &'static str, bound: Bound, along: &str) -> Option<Vec<Vec<f64>>> {
+        let columns = self.count(along);
+        let value = self.required(name)?;
+        let kind = kind_of(value);
+        let Value::Array(rows) = value else {
+            return self.check(name, Err(format!("must be an array of arrays of numbers, got {kind}")), Ok);
+        };
+        let count = rows.iter().map(|row| row.as_array().map_or(1, Vec::len)).sum::<usize>().max(rows.len());
+        if rows.is_empty() {
+            return self.check(name, Err("must have at least 1 row, got none".to_owned()), Ok);
+        }
+        if count > MOST_ELEMENTS {
+            return self.check(name, Err(format!("must have at most {MOST_ELEMENTS} numbers in all, got {count}")), Ok);
+        }
+        let mut faults = Vec::new();
+        let mut matrix = Vec::with_capacity(rows.len());
+        for (index, row) in rows.iter().enumerate() {
+            let Value::Array(elements) = row else {
+                faults.push((format!("{name}/{index}"), format!("must be an array of numbers, got {}", kind_of(row))));
+                continue;
+            };
+            let got = elements.len();
+            if let Some(columns) = columns.filter(|columns| *columns != got) {
+                faults.push((
+                    format!("{name}/{index}"),
+                    format!("must have as many numbers as {along}, {columns}, got {got}"),
+                ));
+            }
+            let mut numbers = Vec::with_capacity(got);
+            for (column, element) in elements.iter().enumerate() {
+                match bounded(element, bound) {
+                    Ok(number) => numbers.push(number),
+                    Err(detail) => faults.push((format!("{name}/{index}/{column}"), detail)),
+                }
+            }
+            matrix.push(numbers);
+        }
+        let sound = faults.is_empty();
+        for (place, detail) in faults {
+            self.fault_of(&place, detail);
+        }
+        sound.then_some(matrix)
+    }
+
+    /// Names out of several, one or more, none of them twice.
+    pub fn choices<T: Copy>(&mut self, name: &'static str, choices: &[(&str, T)]) -> Option<Vec<T>> {
+        let names = choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        let read = |element: &Value| {
+            let given = element.as_str().ok_or_else(|| kind_of(element).to_owned());
+            let chosen = given.and_then(|given| {
+                let known = choices.iter().position(|(name, _)| *name == given);
+                known.ok_or_else(|| format!("{:?}", shortened(given)))
+            });
+            chosen.map_err(|got| format!("must be one of {names}, got {got}"))
+        };
+        let chosen = self.list(name, [1, usize::MAX], "names", read)?;
+        let mut sound = true;
+        for (index, choice) in chosen.iter().enumerate() {
+            if chosen[..index].contains(choice) {
+                self.fault_of(&format!("{name}/{index}"), format!("{} is there twice", choices[*choice].0));
+                sound = false;
+            }
+        }
+        sound.then(|| chosen.into_iter().map(|choice| choices[choice].1).collect())
+    }
+
+    /// Objects, one or more.
+    pub fn objects<T>(&mut self, name: &'static str, mut read: impl FnMut(&mut Object) -> Option<T>) -> Option<Vec<T>> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let Value::Array(elements) = value else {
-            return self.check(name, Err(format!("must be an array of numbers, got {kind}")), Ok);
+            return self.check(name, Err(format!("must be an array of objects, got {kind}")), Ok);
         };
-        let read: Vec<_> = elements.iter().map(|element| bounded(element, bound)).collect();
-        let count = read.len();
-        let mut numbers = Vec::with_capacity(count);
-        for (index, element) in read.into_iter().enumerate() {
+        let count = elements.len();
+        if let Some(detail) = wrong_count(count, [1, MOST_ENTRIES]) {
+            return self.check(name, Err(detail), Ok);
+        }
+        let place = format!("{}/{name}", self.pointer);
+        let elements = self.map.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten();
+        let read = elements
+            .enumerate()
+            .filter_map(|(index, element)| object(element, format!("{place}/{index}"), self.context, &mut read));
+        let objects: Vec<_> = read.collect();
+        (objects.len() == count).then_some(objects)
+    }
+
+    /// A list of so many elements at least and at most, each with its own reader.
+    fn list<T>(
+        &mut self,
+        name: &'static str,
+        counts: [usize; 2],
+        what: &str,
+        read: impl Fn(&Value) -> Result<T, String>,
+    ) -> Option<Vec<T>> {
+        let value = self.required(name)?;
+        let kind = kind_of(value);
+        let Value::Array(elements) = value else {
+            return self.check(name, Err(format!("must be an array of {what}, got {kind}")), Ok);
+        };
+        let count = elements.len();
+        if let Some(detail) = wrong_count(count, counts) {
+            return self.check(name, Err(detail), Ok);
+        }
+        let elements: Vec<_> = elements.iter().map(read).collect();
+        let mut list = Vec::with_capacity(count);
+        for (index, element) in elements.into_iter().enumerate() {
             match element {
-                Ok(number) => numbers.push(number),
+                Ok(element) => list.push(element),
                 Err(detail) => self.fault_of(&format!("{name}/{index}"), detail),
             }
         }
-        (numbers.len() == count).then_some(numbers)
+        (list.len() == count).then_some(list)
+    }
+
+    /// Whether a fault of the field as a whole is noted.
+    fn is_at_fault(&self, name: &str) -> bool {
+        let pointer = format!("{}/{name}", self.pointer);
+        self.context.faults.iter().any(|fault| fault.pointer == pointer)
+    }
+
+    /// The number of entries of a list, if the field is one.
+    fn count(&self, name: &str) -> Option<usize> {
+        self.map.get(name).and_then(Value::as_array).map(Vec::len)
+    }
+
+    /// Notes a fault at every list of the table whose length is not that of the first, where neither is at fault already.
+    pub fn equally_long(&mut self, first: &str, others: &[&str]) -> bool {
+        let mut sound = true;
+        for name in others {
+            let lists = [first, *name].map(|list| self.count(list).filter(|_| !self.is_at_fault(list)));
+            if let [Some(expected), Some(got)] = lists
+                && expected != got
+            {
+                self.fault_of(name, format!("must have as many entries as {first}, {expected}, got {got}"));
+                sound = false;
+            }
+        }
+        sound
     }
 
     /// Notes a fault at every number that is not greater than the one before it.
-    pub fn ascending(&mut self, name: &'static str, numbers: &[f64]) -> bool {
+    ///
+    /// `field` is the pointer to the number within its entry.
+    pub fn ascending(&mut self, name: &'static str, field: &str, numbers: &[f64]) -> bool {
         let mut sound = true;
         for (index, pair) in numbers.windows(2).enumerate() {
             if pair[1] <= pair[0] {
                 let detail = format!("must be greater than the {} before it, got {}", pair[0], pair[1]);
-                self.fault_of(&format!("{name}/{}", index + 1), detail);
+                self.fault_of(&format!("{name}/{}{field}", index + 1), detail);
                 sound = false;
             }
         }
@@ -234,6 +403,29 @@ impl Object<'_> {
         self.choice(name, choices)
     }
 
+    /// A number or an object, each with its own reader; anything else is told what it is to be.
+    pub fn number_or_object<T>(
+        &mut self,
+        name: &'static str,
+        what: &str,
+        number: impl FnOnce(&mut Object) -> Option<T>,
+        object: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        match self.required(name)? {
+            Value::Number(_) => number(self),
+            Value::Object(_) => self.object(name, object),
+            other => {
+                let detail = format!("must be a number or {what}, got {}", kind_of(other));
+                self.check(name, Err(detail), Ok)
+            }
+        }
+    }
+
+    /// Whether the object in the field is of this kind by its `type`, whatever else is wrong with it.
+    pub fn is_of_kind(&self, name: &str, kind: &str) -> bool {
+        self.map.get(name).is_some_and(|object| object["type"] == kind)
+    }
+
     /// The unit of the request's angles; to be read before any angle.
     pub fn angle_unit(&mut self) -> Option<AngleUnit> {
         let unit = self.choice_or("angle_unit", &AngleUnit::NAMES, "rad");
@@ -264,6 +456,11 @@ impl Object<'_> {
     pub fn value<T>(&mut self, name: &'static str, read: impl FnOnce(&Value) -> Result<T, String>) -> Option<T> {
         let value = read(self.required(name)?);
         self.check(name, value, Ok)
+    }
+
+    /// The unit of angles, where the request's own is sound.
+    pub fn unit(&self) -> Option<AngleUnit> {
+        self.context.unit
     }
 
     /// Gives a field its default.
@@ -297,7 +494,7 @@ impl Object<'_> {
     }
 
     /// Notes a fault of the field, or the element of a field, of the given relative pointer.
-    fn fault_of(&mut self, name: &str, detail: String) {
+    pub fn fault_of(&mut self, name: &str, detail: String) {
         self.context.note(format!("{}/{name}", self.pointer), detail);
     }
 
@@ -318,6 +515,16 @@ impl Object<'_> {
             self.context
                 .note(format!("{}/{escaped}", self.pointer), format!("is not a field here; the fields are {known}"));
         }
+    }
+}
+
+/// What is wrong with the length of a list, if it is not between the two.
+fn wrong_count(count: usize, [least, most]: [usize; 2]) -> Option<String> {
+    if count < least {
+        let entries = if least == 1 { "entry" } else { "entries" };
+        Some(format!("must have at least {least} {entries}, got {count}"))
+    } else {
+        (count > most).then(|| format!("must have at most {most} entries, got {count}"))
     }
 }
 

@@ -2,18 +2,22 @@
 
 use reentry::scenario::{self, Bound, Case, Equations, Scenario};
 use reentry::trajectory::Sampling;
+use reentry::wind::Wind as CoreWind;
 use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::atmosphere::Atmosphere;
+use super::control::Control;
 use super::epoch::Instant;
 use super::json::shown;
 use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::state::State;
-use super::vehicle::{Control, Vehicle};
+use super::trajectory::{COLUMNS, Column, Known};
+use super::vehicle::Vehicle;
+use super::wind::Wind;
 
 /// A case to simulate. `vehicle` and `initial_state` are required; all else has defaults. SI units; angles in `angle_unit`.
 #[derive(Clone, Debug, ToSchema)]
@@ -43,6 +47,12 @@ pub struct SimulateRequest {
     /// The air.
     #[schema(required = false)]
     pub atmosphere: Atmosphere,
+    /// By how much the air is denser than its model.
+    #[schema(required = false, minimum = 0, default = 1)]
+    pub density_factor: f64,
+    /// How the air moves; without it, the air turns with the planet.
+    #[schema(required = false, value_type = Wind)]
+    pub wind: Option<Wind>,
     /// What flies.
     pub vehicle: Vehicle,
     /// How it is flown.
@@ -72,7 +82,8 @@ pub struct Stop {
     pub time: f64,
 }
 
-/// The rows of the trajectory: exactly one of these. Rows at the start and at the end are always there.
+/// The rows of the trajectory: exactly one of the first five, which with `columns` alone is `"samples_per_step": 4`.
+/// Rows at the start and at the end are always there.
 #[derive(Clone, Debug, Default, ToSchema)]
 pub struct Output {
     /// Rows a step of the integration, the last at its end: many where the motion is fast.
@@ -90,6 +101,10 @@ pub struct Output {
     /// `false`: no trajectory in the answer.
     #[schema(required = false, value_type = bool)]
     pub trajectory: Option<bool>,
+    /// The columns of the trajectory, in this order; without it, all that the case has.
+    /// Not with `"trajectory": false`, and not for `/analytic`, which has columns of its own.
+    #[schema(required = false, value_type = Vec<String>)]
+    pub columns: Option<Vec<&'static Column>>,
 }
 
 /// The equations to integrate: the same physics twice.
@@ -144,6 +159,7 @@ impl Job {
         let request = reader::read(&mut tree, SimulateRequest::read)?;
         let sampling = request.output.sampling();
         let mut misplaced = request.beyond_rows(wanted);
+        misplaced.extend(request.impossible_columns());
         if wanted == Wanted::Rows && sampling.is_none() {
             let detail = "must not be false where CSV is asked for, which is nothing but the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
@@ -167,6 +183,8 @@ impl SimulateRequest {
         let epoch = read_epoch(object);
         let planet = object.object_or("planet", json!({}), Planet::read);
         let atmosphere = object.object_or("atmosphere", json!({"type": "exponential"}), Atmosphere::read);
+        let density_factor = object.number_or("density_factor", Bound::NON_NEGATIVE, 1.0);
+        let wind = object.has("wind").then(|| object.object("wind", Wind::read));
         let vehicle = object.object("vehicle", Vehicle::read);
         let control = object.object_or("control", json!({}), Control::read);
         let has_epoch = object.has("epoch");
@@ -188,6 +206,8 @@ impl SimulateRequest {
             epoch,
             planet: planet?,
             atmosphere: atmosphere?,
+            density_factor: density_factor?,
+            wind: wind.flatten(),
             vehicle: vehicle?,
             control: control?,
             initial_state: initial_state?,
@@ -203,6 +223,23 @@ impl SimulateRequest {
         let misplaced = asked.into_iter().filter(|(_, asked)| *asked && wanted == Wanted::Rows);
         let detail = "must not be true where CSV is asked for, which has rows and nothing else";
         misplaced.map(|(pointer, _)| Fault::new(pointer, detail)).collect()
+    }
+
+    /// Columns that are asked for and need what the models do not know.
+    fn impossible_columns(&self) -> Vec<Fault> {
+        let known = self.known();
+        let columns = self.output.columns.iter().flatten().enumerate();
+        let missing = columns.filter_map(|(index, column)| {
+            let missing = column.missing(known)?;
+            Some(Fault::new(format!("/output/columns/{index}"), format!("{} needs {missing}", column.name)))
+        });
+        missing.collect()
+    }
+
+    /// What there is to know at an instant of the flight.
+    pub fn known(&self) -> Known {
+        let air = self.atmosphere.to_core();
+        Known { temperature: air.has_temperature(), pressure: air.has_pressure(), epoch: self.epoch }
     }
 
     pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
@@ -221,8 +258,10 @@ impl SimulateRequest {
         let case = Case {
             planet,
             atmosphere: self.atmosphere.to_core(),
+            density_factor: self.density_factor,
+            wind: self.wind.as_ref().map_or(CoreWind::Still, Wind::to_core),
             vehicle: self.vehicle.to_core(),
-            bank_angle: self.angle_unit.to_radians(self.control.bank_angle),
+            control: self.control.to_core(self.angle_unit),
             initial_state,
             stop,
             solver: self.solver.to_core(),
@@ -234,7 +273,9 @@ impl SimulateRequest {
 /// A fault that the core found, at the field of the request that it concerns.
 pub fn fault(fault: &scenario::Fault) -> Fault {
     let pointer = match fault {
-        scenario::Fault::OutOfBounds { field, .. } => format!("/{}", field.replace('.', "/")),
+        scenario::Fault::OutOfBounds { field, .. } | scenario::Fault::NoTemperature { field } => {
+            format!("/{}", field.replace('.', "/"))
+        }
         scenario::Fault::OddShape { .. } => "/planet/polar_radius".to_owned(),
         scenario::Fault::StopBelowCentre { .. } => "/stop/altitude".to_owned(),
         scenario::Fault::AtCentre
@@ -261,9 +302,15 @@ impl Stop {
 }
 
 impl Output {
-    const WAYS: [&'static str; 5] = ["samples_per_step", "interval", "count", "times", "trajectory"];
+    /// The fields of which one says which rows there are.
+    pub const WAYS: [&'static str; 5] = ["samples_per_step", "interval", "count", "times", "trajectory"];
 
     fn read(object: &mut Object) -> Option<Self> {
+        let columns =
+            object.has("columns").then(|| object.choices("columns", &COLUMNS.each_ref().map(|c| (c.name, c))));
+        if columns.is_some() && !Self::WAYS.iter().any(|way| object.has(way)) {
+            object.fill("samples_per_step", json!(4));
+        }
         let samples_per_step = object.has("samples_per_step").then(|| object.whole_number("samples_per_step", 1));
         let interval = object.optional_number("interval", Bound::POSITIVE);
         let count = object.has("count").then(|| object.whole_number("count", 2));
@@ -274,7 +321,10 @@ impl Output {
                 other => Err(format!("must be false, or be left out for one of the other ways, got {}", shown(other))),
             })
         });
-        let times = times.map(|times| times.filter(|times| object.ascending("times", times)));
+        if columns.is_some() && trajectory.is_some() {
+            object.fault_of("columns", "must be left out where there is no trajectory".to_owned());
+        }
+        let times = times.map(|times| times.filter(|times| object.ascending("times", "", times)));
         object.exactly_one(&Self::WAYS)?;
         Some(Self {
             samples_per_step: samples_per_step.flatten(),
@@ -282,6 +332,7 @@ impl Output {
             count: count.flatten(),
             times: times.flatten(),
             trajectory: trajectory.flatten(),
+            columns: columns.flatten(),
         })
     }
 

@@ -23,8 +23,8 @@ pub struct Sensitivities {
     pub flight_path_angle: Gradient,
 }
 
-/// The derivatives of one quantity; null where there is none: at a grazing impact and, of what is undefined there, at the end of a
-/// flight at rest, in vertical flight, or at a pole.
+/// The derivatives of one quantity; null where there is none: by a number that the case does not have; at a grazing impact and, of
+/// what is undefined there, at the end of a flight at rest, in vertical flight, or at a pole.
 /// The last six are by the initial state in its `planet_relative` form, with its `radius`.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Gradient {
@@ -43,9 +43,12 @@ pub struct Gradient {
     /// Per radian or degree.
     #[schema(required = true)]
     pub bank_angle: Option<f64>,
-    /// Per kg/m³ at altitude 0.
+    /// Per kg/m³ at altitude 0; null but with an exponential atmosphere.
     #[schema(required = true)]
     pub surface_density: Option<f64>,
+    /// Per unit of the factor.
+    #[schema(required = true)]
+    pub density_factor: Option<f64>,
     /// Per m.
     #[schema(required = true)]
     pub radius: Option<f64>,
@@ -96,6 +99,7 @@ impl Gradient {
             drag_coefficient: by(gradient.drag_coefficient),
             bank_angle: by_angle(gradient.bank_angle),
             surface_density: by(gradient.surface_density),
+            density_factor: by(gradient.density_factor),
             radius: by(radius),
             longitude: by_angle(longitude),
             geocentric_latitude: by_angle(geocentric_latitude),

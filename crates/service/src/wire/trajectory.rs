@@ -1,41 +1,89 @@
 //! The answer of `/simulate`: its columns, peaks and warnings, as JSON and as CSV.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::io::Write;
+
 use reentry::coordinates::UndefinedElements;
 use reentry::simulate::SimulationError;
-use reentry::trajectory::{self, FlightPoint, Peaks as CorePeaks, Termination as CoreTermination, Trajectory};
-use serde::ser::{SerializeMap, SerializeSeq};
+use reentry::trajectory::{self, FlightPoint, Lookup, Peaks as CorePeaks, Termination as CoreTermination, Trajectory};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
-use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Type};
+use utoipa::openapi::schema::{ArrayBuilder, KnownFormat, ObjectBuilder, SchemaFormat, SchemaType, Type};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
+use super::epoch::{Instant, Utc};
 use super::planet::{PlanetModel, Shape};
 use super::scenario::{Formulation, Job, SimulateRequest};
 use super::sensitivities::Sensitivities;
+use super::vehicle::Aerodynamics;
 use super::verification::Verification;
+use super::wind::Wind;
 
 /// One quantity of the flight: a key of the states, a column of the trajectory.
+#[derive(Debug)]
 pub struct Column {
     /// Its name in JSON and CSV.
     pub name: &'static str,
     /// Its meaning and unit.
     pub description: &'static str,
-    is_angle: bool,
-    value: fn(&FlightPoint) -> f64,
+    needs: Needs,
+    quantity: Quantity,
+}
+
+/// What a case must have for a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Needs {
+    Nothing,
+    Temperature,
+    Pressure,
+    Epoch,
+}
+
+/// How a column is made from a point of the flight.
+#[derive(Debug)]
+enum Quantity {
+    Number(fn(&FlightPoint) -> f64),
+    Angle(fn(&FlightPoint) -> f64),
+    /// In [0, 2π).
+    Turn(fn(&FlightPoint) -> f64),
+    /// Null where there is none.
+    Maybe(fn(&FlightPoint) -> Option<f64>),
+    /// The time in UTC.
+    Utc,
+}
+
+/// What there is to know at every instant of a flight beside its motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Whether the atmosphere has a temperature.
+    pub temperature: bool,
+    /// Whether the atmosphere has a pressure.
+    pub pressure: bool,
+    /// The instant t = 0.
+    pub epoch: Option<Instant>,
 }
 
 const fn column(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
-    Column { name, description, is_angle: false, value }
+    Column { name, description, needs: Needs::Nothing, quantity: Quantity::Number(value) }
 }
 
 const fn angle(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
-    Column { name, description, is_angle: true, value }
+    Column { name, description, needs: Needs::Nothing, quantity: Quantity::Angle(value) }
+}
+
+const fn maybe(
+    name: &'static str,
+    description: &'static str,
+    needs: Needs,
+    value: fn(&FlightPoint) -> Option<f64>,
+) -> Column {
+    Column { name, description, needs, quantity: Quantity::Maybe(value) }
 }
 
 /// Every quantity, in the order of the answer.
-pub const COLUMNS: [Column; 14] = [
+pub static COLUMNS: [Column; 28] = [
     column("time", "Since the start, s.", |point| point.time),
     column("altitude", "Height above the planet's shape along the radius vector, m.", |point| point.loads.altitude),
     column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
@@ -55,19 +103,129 @@ pub const COLUMNS: [Column; 14] = [
     }),
     angle("heading", "From east (0) towards north (π/2), in (-π, π].", |point| point.flight_path.heading),
     column("density", "Of the air, kg/m³.", |point| point.loads.density),
-    column("dynamic_pressure", "½ρV², Pa.", |point| point.loads.dynamic_pressure),
+    column("dynamic_pressure", "½ρV² of the speed relative to the air, Pa.", |point| point.loads.dynamic_pressure),
     column(
         "deceleration",
         "-dV/dt of the relative speed, m/s²; at rest minus the magnitude of the acceleration.",
         |point| point.loads.deceleration,
     ),
     column("load_factor", "Aerodynamic force over mass and 9.80665 m/s².", |point| point.loads.load_factor),
+    Column {
+        name: "azimuth",
+        description: "The compass direction of the heading: from north (0) towards east (π/2), in [0, 2π).",
+        needs: Needs::Nothing,
+        quantity: Quantity::Turn(azimuth),
+    },
+    column("air_speed", "Relative to the air, m/s.", |point| point.loads.air_speed),
+    maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Needs::Temperature, |point| {
+        point.temperature
+    }),
+    maybe("pressure", "Of the air, Pa; where the atmosphere has a pressure.", Needs::Pressure, |point| point.pressure),
+    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has a temperature.", Needs::Temperature, |point| {
+        point.speed_of_sound
+    }),
+    maybe(
+        "mach",
+        "The speed relative to the air over that of sound; where the atmosphere has a temperature.",
+        Needs::Temperature,
+        |point| point.loads.mach,
+    ),
+    angle("bank_angle", "As commanded.", |point| point.bank_angle),
+    angle("angle_of_attack", "As commanded.", |point| point.angle_of_attack),
+    maybe(
+        "downrange",
+        "From the initial ground point along the great circle of its heading, m, on the sphere of the equatorial radius; \
+         null where the flight starts vertically or at rest.",
+        Needs::Nothing,
+        |point| point.downrange,
+    ),
+    maybe(
+        "crossrange",
+        "To the right of that great circle, m; null where the flight starts vertically or at rest.",
+        Needs::Nothing,
+        |point| point.crossrange,
+    ),
+    column("inertial_speed", "Relative to inertial space, m/s.", |point| point.inertial_speed),
+    angle("inertial_flight_path_angle", "Of the inertial velocity above the plane normal to the radius.", |point| {
+        point.inertial_flight_path_angle
+    }),
+    column(
+        "specific_energy",
+        "Half the squared inertial speed and the potential of the planet's gravity, J/kg.",
+        |point| point.specific_energy,
+    ),
+    Column {
+        name: "utc",
+        description: "The instant in UTC, RFC 3339 to the microsecond; with an epoch. A leap second during the flight is not \
+                      counted; null after the year 9999.",
+        needs: Needs::Epoch,
+        quantity: Quantity::Utc,
+    },
 ];
 
+/// The compass direction of the heading, in [0, 2π).
+fn azimuth(point: &FlightPoint) -> f64 {
+    let azimuth = FRAC_PI_2 - point.flight_path.heading;
+    // The heading is at most π, and just less than 0 may round to the full turn.
+    let turn = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
+    if turn < TAU { turn } else { 0.0 }
+}
+
+/// A value of a column.
+enum Cell {
+    Number(f64),
+    Instant(Utc),
+    Nothing,
+}
+
+impl Serialize for Cell {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => number.serialize(serializer),
+            Self::Instant(instant) => instant.serialize(serializer),
+            Self::Nothing => serializer.serialize_none(),
+        }
+    }
+}
+
 impl Column {
-    fn of(&self, point: &FlightPoint, unit: AngleUnit) -> f64 {
-        let value = (self.value)(point);
-        if self.is_angle { unit.from_radians(value) } else { value }
+    /// What the case lacks for the column, if anything.
+    pub fn missing(&self, known: Known) -> Option<&'static str> {
+        match self.needs {
+            Needs::Temperature if !known.temperature => {
+                Some("an atmosphere that has a temperature: us76, or a table with one")
+            }
+            Needs::Pressure if !known.pressure => Some("an atmosphere that has a pressure: us76, or a table with one"),
+            Needs::Epoch if known.epoch.is_none() => Some("an epoch"),
+            _ => None,
+        }
+    }
+
+    /// Every column that the case has.
+    fn all(known: Known) -> impl Iterator<Item = &'static Self> {
+        COLUMNS.iter().filter(move |column| column.missing(known).is_none())
+    }
+
+    fn of(&self, point: &FlightPoint, unit: AngleUnit, epoch: Option<Instant>) -> Cell {
+        match self.quantity {
+            Quantity::Number(value) => Cell::Number(value(point)),
+            Quantity::Angle(value) => Cell::Number(unit.from_radians(value(point))),
+            Quantity::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
+            Quantity::Maybe(value) => value(point).map_or(Cell::Nothing, Cell::Number),
+            Quantity::Utc => epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant),
+        }
+    }
+
+    /// The schema of a value.
+    fn schema(&self) -> ObjectBuilder {
+        let types = |kind| SchemaType::from_iter([kind, Type::Null]);
+        match (&self.quantity, self.needs) {
+            (Quantity::Utc, _) => ObjectBuilder::new()
+                .schema_type(types(Type::String))
+                .format(Some(SchemaFormat::KnownFormat(KnownFormat::DateTime))),
+            (Quantity::Maybe(_), Needs::Nothing) => ObjectBuilder::new().schema_type(types(Type::Number)),
+            _ => ObjectBuilder::new().schema_type(Type::Number),
+        }
     }
 }
 
@@ -76,24 +234,24 @@ impl Column {
 pub struct Row {
     point: FlightPoint,
     unit: AngleUnit,
+    known: Known,
 }
 
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(COLUMNS.len()))?;
-        for column in &COLUMNS {
-            map.serialize_entry(column.name, &column.of(&self.point, self.unit))?;
-        }
-        map.end()
+        serializer.collect_map(Column::all(self.known).map(|column| {
+            let cell = column.of(&self.point, self.unit, self.known.epoch);
+            (column.name, cell)
+        }))
     }
 }
 
 impl PartialSchema for Row {
     fn schema() -> RefOr<Schema> {
-        let number = |description| ObjectBuilder::new().schema_type(Type::Number).description(Some(description));
         let object = ObjectBuilder::new().description(Some("The state and the loads at an instant."));
         let with = |object: ObjectBuilder, column: &Column| {
-            object.property(column.name, number(column.description)).required(column.name)
+            let object = object.property(column.name, column.schema().description(Some(column.description)));
+            if column.needs == Needs::Nothing { object.required(column.name) } else { object }
         };
         COLUMNS.iter().fold(object, with).into()
     }
@@ -105,29 +263,25 @@ impl ToSchema for Row {}
 #[derive(Clone, Debug)]
 pub struct Columns {
     points: Vec<FlightPoint>,
+    chosen: Vec<&'static Column>,
     unit: AngleUnit,
+    epoch: Option<Instant>,
 }
 
 impl Serialize for Columns {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(COLUMNS.len()))?;
-        for column in &COLUMNS {
-            map.serialize_entry(column.name, &Values { column, columns: self })?;
-        }
-        map.end()
+        serializer.collect_map(self.chosen.iter().map(|column| (column.name, Values { column, columns: self })))
     }
 }
 
 impl PartialSchema for Columns {
     fn schema() -> RefOr<Schema> {
-        let array = |description| {
-            let number = ObjectBuilder::new().schema_type(Type::Number);
-            ArrayBuilder::new().items(number).description(Some(description))
-        };
-        let object = ObjectBuilder::new()
-            .description(Some("The trajectory: one array a quantity, all of one length, time strictly increasing."));
+        let description = "The trajectory: one array a quantity, all of one length, time strictly increasing. \
+                           With `output.columns` those alone.";
+        let object = ObjectBuilder::new().description(Some(description));
         let with = |object: ObjectBuilder, column: &Column| {
-            object.property(column.name, array(column.description)).required(column.name)
+            let array = ArrayBuilder::new().items(column.schema()).description(Some(column.description));
+            object.property(column.name, array)
         };
         COLUMNS.iter().fold(object, with).into()
     }
@@ -142,11 +296,19 @@ struct Values<'a> {
 
 impl Serialize for Values<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut sequence = serializer.serialize_seq(Some(self.columns.points.len()))?;
-        for point in &self.columns.points {
-            sequence.serialize_element(&self.column.of(point, self.columns.unit))?;
+        let Columns { points, unit, epoch, .. } = self.columns;
+        // The kind of the quantity is looked at once, not at every value.
+        match self.column.quantity {
+            Quantity::Number(value) => serializer.collect_seq(points.iter().map(value)),
+            Quantity::Angle(value) => {
+                serializer.collect_seq(points.iter().map(|point| unit.from_radians(value(point))))
+            }
+            Quantity::Turn(value) => {
+                serializer.collect_seq(points.iter().map(|point| unit.turn_from_radians(value(point))))
+            }
+            Quantity::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
+            Quantity::Utc => serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, *epoch))),
         }
-        sequence.end()
     }
 }
 
@@ -156,16 +318,20 @@ impl Columns {
     /// # Errors
     /// Never: memory can always be written.
     pub fn to_csv(&self) -> Result<Vec<u8>, serde_json::Error> {
-        let mut csv = Vec::with_capacity(280 * (self.points.len() + 1));
-        let names: Vec<_> = COLUMNS.iter().map(|column| column.name).collect();
+        let mut csv = Vec::with_capacity(20 * self.chosen.len() * (self.points.len() + 1));
+        let names: Vec<_> = self.chosen.iter().map(|column| column.name).collect();
         csv.extend_from_slice(names.join(",").as_bytes());
         csv.push(b'\n');
         for point in &self.points {
-            for (index, column) in COLUMNS.iter().enumerate() {
+            for (index, column) in self.chosen.iter().enumerate() {
                 if index > 0 {
                     csv.push(b',');
                 }
-                serde_json::to_writer(&mut csv, &column.of(point, self.unit))?;
+                match column.of(point, self.unit, self.epoch) {
+                    Cell::Number(number) => serde_json::to_writer(&mut csv, &number)?,
+                    Cell::Instant(instant) => write!(csv, "{instant}").map_err(serde_json::Error::io)?,
+                    Cell::Nothing => {}
+                }
             }
             csv.push(b'\n');
         }
@@ -205,6 +371,10 @@ pub struct Peaks {
     pub dynamic_pressure: Peak,
     /// m.
     pub altitude: Peak,
+    /// The speed relative to the air over that of sound; where the atmosphere has a temperature.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub mach: Option<Peak>,
 }
 
 /// The models that flew.
@@ -216,6 +386,12 @@ pub struct Models {
     pub shape: Shape,
     /// The type of the atmosphere.
     pub atmosphere: &'static str,
+    /// The type of the gravity.
+    pub gravity: &'static str,
+    /// The type of the aerodynamics.
+    pub aerodynamics: &'static str,
+    /// The type of the wind; `still` where the air turns with the planet.
+    pub wind: &'static str,
 }
 
 /// How the equations were integrated.
@@ -307,10 +483,17 @@ impl SimulateResponse {
     pub fn new(job: Job, flight: &Trajectory, points: Option<Vec<FlightPoint>>, extras: Extras, elapsed: f64) -> Self {
         let Job { request, echo, .. } = job;
         let unit = request.angle_unit;
-        let row = |point| Row { point, unit };
+        let known = request.known();
+        let row = |point| Row { point, unit, known };
         let statistics = flight.statistics();
         let warnings = Warning::of(&request, flight, &extras);
         Self {
+            trajectory: points.map(|points| Columns {
+                points,
+                chosen: request.output.columns.unwrap_or_else(|| Column::all(known).collect()),
+                unit,
+                epoch: known.epoch,
+            }),
             name: request.name,
             angle_unit: unit,
             version: env!("CARGO_PKG_VERSION"),
@@ -318,6 +501,9 @@ impl SimulateResponse {
                 planet: request.planet.model,
                 shape: request.planet.shape,
                 atmosphere: request.atmosphere.kind(),
+                gravity: request.planet.gravity.kind(),
+                aerodynamics: request.vehicle.aerodynamics.kind(),
+                wind: request.wind.as_ref().map_or("still", Wind::kind),
             },
             termination: match flight.termination() {
                 CoreTermination::SurfaceImpact => Termination::SurfaceImpact,
@@ -326,7 +512,6 @@ impl SimulateResponse {
             initial_state: row(flight.initial()),
             final_state: row(flight.last()),
             peaks: Peaks::from(flight.peaks()),
-            trajectory: points.map(|points| Columns { points, unit }),
             sensitivities: extras.sensitivities,
             verification: extras.verification,
             solver: SolverReport {
@@ -351,6 +536,7 @@ impl From<&CorePeaks> for Peaks {
             load_factor: peak(peaks.load_factor),
             dynamic_pressure: peak(peaks.dynamic_pressure),
             altitude: peak(peaks.altitude),
+            mach: peaks.mach.map(peak),
         }
     }
 }
@@ -362,7 +548,14 @@ impl Warning {
 
     /// What there is to know of a flight and of the request for it.
     pub fn of(request: &SimulateRequest, flight: &Trajectory, extras: &Extras) -> Vec<Self> {
-        let mut warnings: Vec<_> = flight.warnings().iter().copied().map(Self::of_flight).collect();
+        let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
+        let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
+        let by_angle_of_attack = matches!(request.vehicle.aerodynamics, Aerodynamics::AlphaMachTable(_));
+        if request.control.angle_of_attack.is_given() && !by_angle_of_attack {
+            let detail =
+                "control.angle_of_attack changes nothing: only the coefficients of an alpha_mach_table depend on it";
+            warnings.push(Self::new("angle_of_attack_unused", detail));
+        }
         if request.epoch.is_some() && request.initial_state.is_inertial() {
             warnings.push(Self::frame_of_date());
         }
@@ -379,11 +572,45 @@ impl Warning {
         Self::new("bank_angle_left_out", detail)
     }
 
-    fn of_flight(warning: trajectory::Warning) -> Self {
-        let trajectory::Warning::LiftFadedNearVertical { time } = warning;
-        let detail = "the flight came within 0.001 rad of the vertical, where the bank angle is undefined; \
-                      lift fades out there";
-        Self { time: Some(time), ..Self::new("lift_faded_near_vertical", detail) }
+    /// The theories know no wind.
+    pub fn wind_left_out() -> Self {
+        let detail =
+            "the theory knows no wind: its speed and angle are as in still air, while the simulated flight has wind";
+        Self::new("wind_left_out", detail)
+    }
+
+    fn of_flight(warning: trajectory::Warning, unit: AngleUnit) -> Self {
+        match warning {
+            trajectory::Warning::LiftFadedNearVertical { time } => {
+                let detail = "the flight came within 0.001 rad of the vertical, where the bank angle is undefined; \
+                              lift fades out there";
+                Self { time: Some(time), ..Self::new("lift_faded_near_vertical", detail) }
+            }
+            trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
+                let (table, edge, holds) = match table {
+                    Lookup::Atmosphere => (
+                        "the atmosphere",
+                        format!("an altitude of {edge} m"),
+                        "the logarithm of the density goes on in a straight line",
+                    ),
+                    Lookup::Wind => ("the wind", format!("an altitude of {edge} m"), "the wind of the edge holds"),
+                    Lookup::Mach => {
+                        ("the aerodynamics", format!("a Mach number of {edge}"), "the coefficients of the edge hold")
+                    }
+                    Lookup::AngleOfAttack => (
+                        "the aerodynamics",
+                        format!("an angle of attack of {}", unit.from_radians(edge)),
+                        "the coefficients of the edge hold",
+                    ),
+                };
+                let end = if above { "ends" } else { "begins" };
+                let detail = format!(
+                    "the table of {table} {end} at {edge}; the flight leaves it at {time} s, at an altitude of {altitude} m, \
+                     and beyond {holds}"
+                );
+                Self { time: Some(time), ..Self::new("outside_table", &detail) }
+            }
+        }
     }
 
     /// Which orbital elements are conventions.
