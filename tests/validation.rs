@@ -1,4 +1,5 @@
-//! Prints the table of validation results in the README: every case of the thesis over HTTP against an independent program.
+//! Prints the tables of validation results in the README, over HTTP: every case of the thesis against an independent program, check
+//! cases against NASA's simulations, and the thesis's cases in standard air.
 
 use reentry_tests::cases::{distance, thesis_cases};
 use reentry_tests::service::Service;
@@ -40,6 +41,8 @@ async fn main() {
             metres(spherical)
         );
     }
+    println!("\n{}", reentry_tests::nesc::table().await);
+    print!("{}", reentry_tests::standard_air::table().await);
 }
 
 /// A distance in a unit that suits it.

@@ -4,10 +4,8 @@
 //! NASA's histories are there for cases 1, 6 and 9. For the others there is [`Oracle`], an integration that shares nothing with the
 //! service and is itself held against the histories.
 
-use std::path::Path;
-
 use nalgebra::Vector3;
-use reentry_tests::cases::{read_csv, read_json};
+use reentry_tests::nesc::{CONSTANTS, FOOT, Row, cases, fly, history, request};
 use reentry_tests::service::Service;
 use serde_json::{Value, json};
 
@@ -15,99 +13,6 @@ use crate::check::{angle, near};
 
 use super::refusal::good_answer;
 use super::requests::with;
-
-/// The constants of the Earth by which a case is computed: those that NASA gives, and those that its simulations evidently have.
-const CONSTANTS: [&str; 2] = ["nasa", "wgs_84"];
-
-/// A foot, m: the international one.
-const FOOT: f64 = 0.3048;
-
-/// Where the sphere is at a whole second.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    /// m.
-    geodetic_altitude: f64,
-    /// Radians.
-    longitude: f64,
-    /// Radians.
-    geodetic_latitude: f64,
-    /// Planet-fixed, m; simulation 04 does not tell it.
-    position: Option<Vector3<f64>>,
-}
-
-/// The cases, with their constants and sources.
-fn cases() -> Value {
-    read_json(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/nesc/cases.json"))
-}
-
-/// The history of a case by one of NASA's simulations.
-fn history(case: &str, simulation: &str) -> Vec<Row> {
-    let rows = read_csv("nesc/histories.csv");
-    let of_case = rows.iter().filter(|row| row[0] == case && row[1] == simulation);
-    let rows: Vec<_> = of_case
-        .enumerate()
-        .map(|(second, row)| {
-            let number = |field: usize| row[field].parse::<f64>().unwrap();
-            assert_eq!(row[2], second.to_string());
-            Row {
-                geodetic_altitude: number(3),
-                longitude: number(4).to_radians(),
-                geodetic_latitude: number(5).to_radians(),
-                position: (!row[6].is_empty()).then(|| Vector3::new(number(6), number(7), number(8))),
-            }
-        })
-        .collect();
-    assert_eq!(rows.len(), 31, "case {case} by simulation {simulation}");
-    rows
-}
-
-/// The request of a case.
-fn request(case: &str, constants: &str) -> Value {
-    let cases = cases();
-    let (case, constants) = (&cases["cases"][case], &cases["constants"][constants]);
-    let mut request = json!({
-        "angle_unit": "deg",
-        "planet": cases["planet"],
-        "atmosphere": {"type": "us76"},
-        "vehicle": cases["vehicle"],
-        "initial_state": {"type": "geodetic", "longitude": 0, "geodetic_latitude": 0},
-        "stop": {"altitude": -1000, "time": 30},
-        "output": {"interval": 1},
-    });
-    for name in ["gravitational_parameter", "rotation_rate"] {
-        request["planet"][name] = constants[name].clone();
-    }
-    for name in ["geodetic_altitude", "speed", "flight_path_angle", "azimuth"] {
-        request["initial_state"][name] = case[name].clone();
-    }
-    request["vehicle"]["aerodynamics"] = json!({"type": "constant", "drag_coefficient": case["drag_coefficient"]});
-    if !case["wind"].is_null() {
-        request["wind"] = case["wind"].clone();
-    }
-    request
-}
-
-/// What the service answers to a request, by the second.
-async fn fly(request: &Value) -> Vec<Row> {
-    let answer = good_answer(&Service::new(), "/simulate", request).await;
-    let columns = &answer["trajectory"];
-    let count = columns["time"].as_array().unwrap().len();
-    assert_eq!(count, 31, "{}", columns["time"]);
-    let row = |second: usize| {
-        let number = |name: &str| columns[name][second].as_f64().unwrap();
-        near("a row at each second", number("time"), f64::from(u32::try_from(second).unwrap()), 0.0);
-        let (sin_lon, cos_lon) = number("longitude").to_radians().sin_cos();
-        let (sin_lat, cos_lat) = number("geocentric_latitude").to_radians().sin_cos();
-        let up = Vector3::new(cos_lat * cos_lon, cos_lat * sin_lon, sin_lat);
-        Row {
-            geodetic_altitude: number("geodetic_altitude"),
-            longitude: number("longitude").to_radians(),
-            geodetic_latitude: number("geodetic_latitude").to_radians(),
-            position: Some(up * number("radius")),
-        }
-    };
-    (0..count).map(row).collect()
-}
 
 /// The same flights by the method of Runge and Kutta with a fixed step, in planet-fixed Cartesian coordinates.
 struct Oracle {
@@ -305,6 +210,14 @@ async fn the_service_flies_as_the_oracle_does() {
             let what = format!("case {case} with the constants {constants}");
             same_places(&what, &fly(&fine).await, &oracle, Tolerance { altitude: 1e-3, place: 1e-3 });
         }
+    }
+}
+
+#[tokio::test]
+async fn the_readme_has_the_tables_that_make_validation_prints() {
+    for table in [reentry_tests::nesc::table().await, reentry_tests::standard_air::table().await] {
+        assert!(table.lines().count() >= 5);
+        assert!(include_str!("../../README.md").contains(&table), "out of date: run `make validation`\n{table}");
     }
 }
 
