@@ -1,5 +1,6 @@
 //! `cargo bench --bench flights`: what a flight costs, in counts and in time, beside the DOP853 of `ode_solvers` with the same
-//! derivative, and what lanes, sensitivities and verification cost in plain flights.
+//! derivative; what the models cost that the thesis does not have, and how many steps their changes of formula reject; and what lanes,
+//! sensitivities and verification cost in plain flights.
 //!
 //! Machines are noisy: in every comparison the contenders take turns, and a time is the median of many rounds. Counts are exact.
 
@@ -10,16 +11,18 @@ use std::sync::atomic::AtomicBool;
 
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
-use reentry::integrate::System;
+use reentry::integrate::{Statistics, System};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{arrival, arrivals};
+use reentry::trajectory::Sampling;
 use reentry::verification::verify;
 use reentry::{Case, FlightPath, Scenario, Solver, Stop, simulate};
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_tests::cases::thesis_cases;
 use reentry_tests::timing::{medians, timed};
+use serde_json::{Value, json};
 
 const CASES: [&str; 4] = ["target_1", "target_2", "impulse", "shallow_glide"];
 const ROUNDS: usize = 1000;
@@ -28,6 +31,8 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 fn main() {
     flights();
     beside_ode_solvers();
+    right_hand_sides();
+    changes_of_formula();
     number_types();
 }
 
@@ -54,9 +59,9 @@ fn beside_ode_solvers() {
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for name in CASES {
-        let case = *scenario(name).case();
+        let case = scenario(name).case().clone();
         let with_tolerance =
-            |relative_tolerance: f64| Case { solver: Solver { relative_tolerance, ..case.solver }, ..case };
+            |relative_tolerance: f64| Case { solver: Solver { relative_tolerance, ..case.solver }, ..case.clone() };
         let exact = arrival(&Scenario::new(with_tolerance(1e-14)).unwrap(), &NEVER).unwrap();
         let miss = |position: [f64; 3]| {
             position.iter().zip(exact.state.position.iter()).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
@@ -66,7 +71,8 @@ fn beside_ode_solvers() {
         let to_the_time =
             |tolerance| Case { stop: Stop { altitude: -1e5, time: exact.time }, ..with_tolerance(tolerance) };
         let ours = tolerances.map(|tolerance| Scenario::new(to_the_time(tolerance)).unwrap());
-        let theirs = tolerances.map(|tolerance| move || peer(&case, exact.time, tolerance));
+        let peer_at = |tolerance: f64| peer(&case, exact.time, tolerance);
+        let theirs = tolerances.map(|tolerance| move || peer_at(tolerance));
         let times: Vec<_> = ours
             .iter()
             .zip(&theirs)
@@ -93,19 +99,118 @@ fn beside_ode_solvers() {
     }
 }
 
+/// One right-hand side, on a glide between 52 and 70 km: that of the thesis, and with one model more in every line.
+fn right_hand_sides() {
+    let models: Vec<(&str, Case)> = models().into_iter().collect();
+    let times: Vec<f64> = models
+        .iter()
+        .map(|(_, case)| {
+            let flight = simulate(&Scenario::new(case.clone()).unwrap(), &NEVER).unwrap();
+            let points = flight.points(&flight.instants(&Sampling::Interval(0.1), 100_000).unwrap());
+            // Where no formula changes: one regime holds for all of them.
+            let inside = points.into_iter().filter(|point| (52e3..70e3).contains(&point.loads.altitude));
+            let states: Vec<(f64, [f64; 6])> =
+                inside.map(|point| (point.time, point.flight_path.to_planet_fixed().into())).collect();
+            let (_, state) = states[states.len() / 2];
+            let motion = Cartesian(Case { initial_state: state.into(), ..case.clone() }.forces());
+            let [alone] = medians(
+                ROUNDS,
+                [&mut timed(|| {
+                    // Each waits for the one before, as the stages of a step do.
+                    states.iter().fold(0.0, |before, (time, state)| {
+                        let state = std::array::from_fn(|i| state[i] + before);
+                        motion.derivative(*time, &state)[5] * 1e-30
+                    })
+                })],
+            );
+            #[expect(clippy::cast_precision_loss, reason = "some thousand states")]
+            let each = alone * 1e9 / states.len() as f64;
+            each
+        })
+        .collect();
+    println!("\n| right-hand side | time | over the thesis's |");
+    println!("| --- | --- | --- |");
+    for ((name, _), time) in models.iter().zip(&times) {
+        println!("| {name} | {time:.0} ns | {:.2} |", time / times[0]);
+    }
+}
+
+/// Steps taken and rejected on the same glide, with every model and at every tolerance.
+fn changes_of_formula() {
+    println!("\n| flight | tolerance | right-hand sides | steps | rejected | off by | integration and events |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for (name, case) in models() {
+        let with = |relative_tolerance: f64| {
+            Scenario::new(Case { solver: Solver { relative_tolerance, ..case.solver }, ..case.clone() }).unwrap()
+        };
+        let exact = arrival(&with(1e-14), &NEVER).unwrap();
+        for tolerance in [1e-8, 1e-10, 1e-12] {
+            let scenario = with(tolerance);
+            let end = arrival(&scenario, &NEVER).unwrap();
+            let [time] = micros([&mut timed(|| arrival(&scenario, &NEVER))]);
+            let Statistics { steps, rejected_steps, evaluations } = end.statistics;
+            let miss = (end.state.position - exact.state.position).norm();
+            println!(
+                "| {name} | {tolerance:e} | {evaluations} | {steps} | {rejected_steps} | {miss:.1e} m | {time:.1} µs |"
+            );
+        }
+    }
+}
+
+/// The glide of a lifting capsule from 120 km: with the thesis's models, and then with one more each.
+fn models() -> Vec<(&'static str, Case)> {
+    let of_thesis = json!({
+        "vehicle": {"mass": 9500, "reference_area": 19.8,
+            "aerodynamics": {"type": "constant", "lift_coefficient": 0.35, "drag_coefficient": 1.3}},
+        "control": {"bank_angle": 0.8},
+        "initial_state": {"type": "planet_relative", "altitude": 120_000, "longitude": 0, "geocentric_latitude": 0.5,
+            "speed": 7500, "flight_path_angle": -0.026, "heading": 0.7},
+    });
+    let alpha = [-0.2, 0.0, 0.2, 0.4, 0.6];
+    let mach = [0.4, 0.8, 1.2, 2.0, 4.0, 8.0, 16.0, 35.0];
+    let matrix = |of: fn(f64, f64) -> f64| alpha.map(|alpha| mach.map(|mach| of(alpha, mach)));
+    let tables = json!({"type": "alpha_mach_table", "angle_of_attack": alpha, "mach": mach,
+        "lift_coefficient": matrix(|alpha, mach| alpha.sin() * (1.0 + 0.2 / mach)),
+        "drag_coefficient": matrix(|alpha, mach| 1.1 + alpha * alpha + 0.4 / (1.0 + (mach - 1.2) * (mach - 1.2)))});
+    let bank = json!({"type": "schedule", "against": "mach", "at": [1, 5, 10, 15, 20, 24],
+        "value": [0, 0.4, -0.9, 0.9, 1.1, 0.8]});
+    let angle_of_attack = json!({"type": "schedule", "against": "altitude", "at": [10e3, 30e3, 50e3, 90e3],
+        "value": [0.1, 0.2, 0.35, 0.3]});
+    let mut request = of_thesis;
+    let mut cases = Vec::new();
+    for (name, pointer, value) in [
+        ("the thesis's models", "", json!(null)),
+        ("and us76", "/atmosphere", json!({"type": "us76"})),
+        ("and zonal gravity to J4", "/planet", json!({"gravity": {"type": "zonal", "degree": 4}})),
+        ("and an alpha_mach_table", "/vehicle/aerodynamics", tables),
+        ("and two schedules", "/control", json!({"bank_angle": bank, "angle_of_attack": angle_of_attack})),
+        (
+            "and a table of wind",
+            "/wind",
+            json!({"type": "table", "altitude": [0, 12e3, 20e3, 60e3], "east": [5, 40, 10, 20], "north": [0, -10, 5, 0]}),
+        ),
+    ] {
+        if let Some((parent, field)) = pointer.rsplit_once('/') {
+            request.pointer_mut(parent).unwrap()[field] = value;
+        }
+        cases.push((name, job(&request).scenario.case().clone()));
+    }
+    cases
+}
+
 /// TARGET case 2: lanes by the flight, derivatives and verification in plain flights.
 fn number_types() {
-    let case = *scenario("target_2").case();
-    let flight = simulate(&Scenario::new(case).unwrap(), &NEVER).unwrap();
+    let case = scenario("target_2").case().clone();
+    let flight = simulate(&Scenario::new(case.clone()).unwrap(), &NEVER).unwrap();
     let nominal = FlightPath::from_planet_fixed(&case.initial_state);
     // Dispersed by up to 1 per cent, evenly.
     let member = |index: u32| {
         let part = f64::from(index) / 256.0 * 0.02 + 0.99;
         let state = FlightPath { speed: nominal.speed * part, ..nominal };
-        Scenario::new(Case { initial_state: state.to_planet_fixed(), ..case }).unwrap()
+        Scenario::new(Case { initial_state: state.to_planet_fixed(), ..case.clone() }).unwrap()
     };
     let members: Vec<_> = (0..256).map(member).collect();
-    let scenario = Scenario::new(case).unwrap();
+    let scenario = Scenario::new(case.clone()).unwrap();
     let [alone, four, eight, plain, derivatives, verification] = micros([
         &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
         &mut timed(|| arrivals::<4>(&members, &NEVER)),
@@ -127,8 +232,11 @@ fn number_types() {
 
 fn scenario(name: &str) -> Scenario {
     let case = thesis_cases().into_iter().find(|case| case.name == name && case.model == "earth_wgs84").unwrap();
-    let tree = json::parse(case.request.to_string().as_bytes()).unwrap();
-    Job::try_from_tree(tree, Wanted::Answer).unwrap().scenario
+    job(&case.request).scenario
+}
+
+fn job(request: &Value) -> Job {
+    Job::try_from_tree(json::parse(request.to_string().as_bytes()).unwrap(), Wanted::Answer).unwrap()
 }
 
 /// The equations in units of the planet's radius and circular speed, as `ode_solvers` has one tolerance for all components.
@@ -151,7 +259,7 @@ impl ode_solvers::System<f64, SVector<f64, 6>> for Scaled {
         let [x, y, z, vx, vy, vz] = (*state).into();
         let (length, speed) = (self.length, self.speed);
         let state = [x * length, y * length, z * length, vx * speed, vy * speed, vz * speed];
-        let [vx, vy, vz, ax, ay, az] = self.motion.derivative(&state);
+        let [vx, vy, vz, ax, ay, az] = self.motion.derivative(0.0, &state);
         let (by_speed, by_acceleration) = (1.0 / speed, length / (speed * speed));
         let rates = [vx * by_speed, vy * by_speed, vz * by_speed];
         *derivative = SVector::from([

@@ -205,6 +205,7 @@ async fn faults_of_columns_are_named() {
         (json!({"columns": ["time", 3]}), "/output/columns/1", "got a number"),
         (json!({"columns": ["time", "speed", "time"]}), "/output/columns/2", "time is there twice"),
         (json!({"columns": []}), "/output/columns", "must have at least 1 entry, got 0"),
+        (json!({"columns": vec!["time"; 29]}), "/output/columns", "must have at most 28 entries, got 29"),
         (json!({"columns": "time"}), "/output/columns", "must be an array of names, got a string"),
         (json!({"columns": ["time"], "trajectory": false}), "/output/columns", "no trajectory"),
         (json!({"columns": ["time"], "count": 2, "interval": 1}), "/output", "must have exactly one of"),
@@ -360,19 +361,21 @@ async fn tables_are_not_longer_than_allowed() {
         ("/wind/east", "must have at most 10000 entries"),
     ];
     steady.refused_at("/simulate", &long, &expected).await;
-    let rows = vec![vec![0; 1000]; 101];
-    let wide = with(
-        &model("alpha_mach_table"),
-        "/vehicle/aerodynamics",
-        json!({"type": "alpha_mach_table",
-        "angle_of_attack": (0..101).map(|row| f64::from(row) / 100.0).collect::<Vec<_>>(), "mach": ascending(1000),
-        "lift_coefficient": rows, "drag_coefficient": vec![vec![1; 1000]; 100]}),
-    );
+    let wide = json!({"type": "alpha_mach_table", "angle_of_attack": (0..101).map(|row| f64::from(row) / 100.0)
+        .collect::<Vec<_>>(), "mach": ascending(1001), "lift_coefficient": vec![vec![0; 2]; 101],
+        "drag_coefficient": [vec![1; 1001]]});
     let expected = [
-        ("/vehicle/aerodynamics/lift_coefficient", "must have at most 100000 numbers in all, got 101000"),
-        ("/vehicle/aerodynamics/drag_coefficient", "as many entries as angle_of_attack, 101, got 100"),
+        ("/vehicle/aerodynamics/angle_of_attack", "must have at most 100 entries, got 101"),
+        ("/vehicle/aerodynamics/mach", "must have at most 1000 entries, got 1001"),
+        ("/vehicle/aerodynamics/lift_coefficient", "must have at most 100 entries, got 101"),
+        ("/vehicle/aerodynamics/drag_coefficient/0", "must have at most 1000 entries, got 1001"),
     ];
-    steady.refused_at("/simulate", &wide, &expected).await;
+    steady.refused_at("/simulate", &with(&model("alpha_mach_table"), "/vehicle/aerodynamics", wide), &expected).await;
+    let largest = json!({"type": "alpha_mach_table", "angle_of_attack": (0..100).map(|row| f64::from(row) / 100.0)
+        .collect::<Vec<_>>(), "mach": ascending(1000), "lift_coefficient": vec![vec![0; 1000]; 100],
+        "drag_coefficient": vec![vec![1; 1000]; 100]});
+    good_answer(&steady.service, "/simulate", &with(&model("alpha_mach_table"), "/vehicle/aerodynamics", largest))
+        .await;
 }
 
 #[tokio::test]

@@ -8,7 +8,7 @@ use utoipa::OpenApi;
 use crate::error::Problem;
 use crate::wire::batch::MOST_CASES;
 use crate::wire::epoch::RFC3339_PATTERN;
-use crate::wire::reader::MOST_ENTRIES;
+use crate::wire::reader::MOST_COLUMNS;
 use crate::wire::scenario::Output;
 use crate::wire::trajectory::COLUMNS;
 
@@ -212,7 +212,7 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
     let bounded = |least: f64, greatest: f64| json!({"minimum": least, "maximum": greatest});
     let [distance, wind, turn] = [bounded(-1e12, 1e12), bounded(-1e4, 1e4), bounded(-360.0, 360.0)];
     let [positive, not_negative] = [json!({"exclusiveMinimum": 0}), json!({"minimum": 0})];
-    let row = |elements: &Value| json!({"minItems": 1, "maxItems": MOST_ENTRIES, "items": elements});
+    let row = |elements: &Value| json!({"minItems": 1, "maxItems": MOST_COLUMNS, "items": elements});
     let refinements = match name {
         "Ecef" | "Eci" => vec![
             ("position", json!({"minItems": 3, "maxItems": 3})),

@@ -7,7 +7,7 @@ use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::reader::Object;
+use super::reader::{MOST_ENTRIES, Object};
 
 /// The atmosphere, which turns with the planet; altitudes are those along the radius vector.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -213,11 +213,11 @@ impl Layer {
 
 impl TableAtmosphere {
     fn read(object: &mut Object) -> Option<Self> {
-        let altitude = object.entries("altitude", Bound::DISTANCE, 2);
+        let altitude = object.entries("altitude", Bound::DISTANCE, [2, MOST_ENTRIES]);
         let altitude = altitude.filter(|altitude| object.ascending("altitude", "", altitude));
-        let density = object.entries("density", Bound::POSITIVE, 2);
-        let temperature = object.optional_entries("temperature", Bound::POSITIVE, 2);
-        let pressure = object.optional_entries("pressure", Bound::POSITIVE, 2);
+        let density = object.entries("density", Bound::POSITIVE, [2, MOST_ENTRIES]);
+        let temperature = object.optional_entries("temperature", Bound::POSITIVE, [2, MOST_ENTRIES]);
+        let pressure = object.optional_entries("pressure", Bound::POSITIVE, [2, MOST_ENTRIES]);
         let sound = object.equally_long("altitude", &["density", "temperature", "pressure"]);
         let (altitude, density) = (altitude?, density?);
         let lost = object.has("temperature") && temperature.is_none() || object.has("pressure") && pressure.is_none();

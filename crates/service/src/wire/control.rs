@@ -13,7 +13,7 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
-use super::reader::Object;
+use super::reader::{MOST_ENTRIES, Object};
 
 /// How the vehicle is flown: each angle a number, or by a schedule.
 #[derive(Clone, Debug, ToSchema)]
@@ -157,8 +157,8 @@ impl Schedule {
             Some(Against::Time | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
             None => Bound::FINITE,
         };
-        let at = object.entries("at", bound, 1).filter(|at| object.ascending("at", "", at));
-        let value = object.angles("value", Bound::TURN);
+        let at = object.entries("at", bound, [1, MOST_ENTRIES]).filter(|at| object.ascending("at", "", at));
+        let value = object.angles("value", Bound::TURN, MOST_ENTRIES);
         let sound = object.equally_long("at", &["value"]);
         let ways = [("linear", Interpolation::Linear), ("step", Interpolation::Step)];
         let interpolation = object.choice_or("interpolation", &ways, "linear");

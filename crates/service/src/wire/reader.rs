@@ -44,8 +44,11 @@ const MOST_FAULTS: usize = 1000;
 /// The greatest number of entries of a list in a model: a table, a schedule, layers.
 pub const MOST_ENTRIES: usize = 10_000;
 
-/// The greatest number of entries of a matrix.
-pub const MOST_ELEMENTS: usize = 100_000;
+/// The greatest number of rows of a matrix.
+pub const MOST_ROWS: usize = 100;
+
+/// The greatest number of columns of a matrix.
+pub const MOST_COLUMNS: usize = 1000;
 
 /// What all objects of a request share.
 struct Context {
@@ -189,20 +192,20 @@ impl Object<'_> {
         self.list(name, [0, usize::MAX], "numbers", |element| bounded(element, bound))
     }
 
-    /// The numbers of a column of a table, `least` or more.
-    pub fn entries(&mut self, name: &'static str, bound: Bound, least: usize) -> Option<Vec<f64>> {
-        self.list(name, [least, MOST_ENTRIES], "numbers", |element| bounded(element, bound))
+    /// The numbers of a column of a table, so many at least and at most.
+    pub fn entries(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
+        self.list(name, counts, "numbers", |element| bounded(element, bound))
     }
 
-    /// The numbers of a column of a table that may be left out, `least` or more.
-    pub fn optional_entries(&mut self, name: &'static str, bound: Bound, least: usize) -> Option<Vec<f64>> {
-        if self.has(name) { self.entries(name, bound, least) } else { None }
+    /// The numbers of a column of a table that may be left out.
+    pub fn optional_entries(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
+        if self.has(name) { self.entries(name, bound, counts) } else { None }
     }
 
     /// The angles of a column of a table, in the request's unit, one or more; the bound is in radians.
-    pub fn angles(&mut self, name: &'static str, bound: Bound) -> Option<Vec<f64>> {
+    pub fn angles(&mut self, name: &'static str, bound: Bound, most: usize) -> Option<Vec<f64>> {
         let unit = self.context.unit;
-        self.list(name, [1, MOST_ENTRIES], "numbers", |element| bounded_angle(element, bound, unit))
+        self.list(name, [1, most], "numbers", |element| bounded_angle(element, bound, unit))
     }
 
     /// Rows of numbers, one or more, in each as many as there are in the list `along`, where there is one.
@@ -213,12 +216,8 @@ impl Object<'_> {
         let Value::Array(rows) = value else {
             return self.check(name, Err(format!("must be an array of arrays of numbers, got {kind}")), Ok);
         };
-        let count = rows.iter().map(|row| row.as_array().map_or(1, Vec::len)).sum::<usize>().max(rows.len());
-        if rows.is_empty() {
-            return self.check(name, Err("must have at least 1 row, got none".to_owned()), Ok);
-        }
-        if count > MOST_ELEMENTS {
-            return self.check(name, Err(format!("must have at most {MOST_ELEMENTS} numbers in all, got {count}")), Ok);
+        if let Some(detail) = wrong_count(rows.len(), [1, MOST_ROWS]) {
+            return self.check(name, Err(detail), Ok);
         }
         let mut faults = Vec::new();
         let mut matrix = Vec::with_capacity(rows.len());
@@ -228,11 +227,11 @@ impl Object<'_> {
                 continue;
             };
             let got = elements.len();
-            if let Some(columns) = columns.filter(|columns| *columns != got) {
-                faults.push((
-                    format!("{name}/{index}"),
-                    format!("must have as many numbers as {along}, {columns}, got {got}"),
-                ));
+            let differs = columns.filter(|columns| *columns != got);
+            let differs = differs.map(|columns| format!("must have as many numbers as {along}, {columns}, got {got}"));
+            if let Some(detail) = wrong_count(got, [1, MOST_COLUMNS]).or(differs) {
+                faults.push((format!("{name}/{index}"), detail));
+                continue;
             }
             let mut numbers = Vec::with_capacity(got);
             for (column, element) in elements.iter().enumerate() {
@@ -261,7 +260,7 @@ impl Object<'_> {
             });
             chosen.map_err(|got| format!("must be one of {names}, got {got}"))
         };
-        let chosen = self.list(name, [1, usize::MAX], "names", read)?;
+        let chosen = self.list(name, [1, choices.len()], "names", read)?;
         let mut sound = true;
         for (index, choice) in chosen.iter().enumerate() {
             if chosen[..index].contains(choice) {

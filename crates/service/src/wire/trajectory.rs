@@ -639,3 +639,48 @@ impl Warning {
         Self::new("inertial_frame_of_date", detail)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use reentry::trajectory::{Lookup, Warning as CoreWarning};
+
+    use super::{AngleUnit, Warning};
+
+    #[test]
+    fn a_table_that_is_left_is_told_with_what_holds_beyond() {
+        for (table, edge, above, expected) in [
+            (
+                Lookup::Atmosphere,
+                1e5,
+                true,
+                "the table of the atmosphere ends at an altitude of 100000 m; the flight leaves it at 1.5 s, at an altitude of \
+                 2000 m, and beyond the logarithm of the density goes on in a straight line",
+            ),
+            (
+                Lookup::Wind,
+                -10.0,
+                false,
+                "the table of the wind begins at an altitude of -10 m; the flight leaves it at 1.5 s, at an altitude of 2000 m, \
+                 and beyond the wind of the edge holds",
+            ),
+            (
+                Lookup::Mach,
+                0.5,
+                false,
+                "the table of the aerodynamics begins at a Mach number of 0.5; the flight leaves it at 1.5 s, at an altitude of \
+                 2000 m, and beyond the coefficients of the edge hold",
+            ),
+            (
+                Lookup::AngleOfAttack,
+                std::f64::consts::FRAC_PI_2,
+                true,
+                "the table of the aerodynamics ends at an angle of attack of 90; the flight leaves it at 1.5 s, at an altitude of \
+                 2000 m, and beyond the coefficients of the edge hold",
+            ),
+        ] {
+            let warning = CoreWarning::OutsideTable { table, time: 1.5, altitude: 2000.0, edge, above };
+            let warning = Warning::of_flight(warning, AngleUnit::Deg);
+            assert_eq!((warning.code, warning.time, warning.detail.as_str()), ("outside_table", Some(1.5), expected));
+        }
+    }
+}

@@ -10,7 +10,7 @@ use reentry::vehicle::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::reader::Object;
+use super::reader::{MOST_COLUMNS, MOST_ENTRIES, MOST_ROWS, Object};
 
 /// A point mass with lift and drag.
 #[derive(Clone, Debug, ToSchema)]
@@ -97,7 +97,7 @@ pub struct MachTable {
 }
 
 /// Coefficients by angle of attack and Mach number, smooth between the entries; beyond the first and the last their values hold.
-/// Of each coefficient a row for every angle of attack, with a number for every Mach number; at most 100 000 numbers in all.
+/// Of each coefficient a row for every angle of attack, with a number for every Mach number.
 /// Needs an atmosphere that has a temperature.
 // The numbers stand here for the schema; what flies is `core`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -106,16 +106,16 @@ pub struct AlphaMachTable {
     #[serde(rename = "type")]
     pub kind: &'static str,
     /// Ascending, within ±2π (±360°).
-    #[schema(min_items = 1, max_items = 10_000)]
+    #[schema(min_items = 1, max_items = 100)]
     pub angle_of_attack: Vec<f64>,
     /// The speed relative to the air over that of sound, ascending.
-    #[schema(min_items = 1, max_items = 10_000)]
+    #[schema(min_items = 1, max_items = 1000)]
     pub mach: Vec<f64>,
     /// Negative lift points down at zero bank.
-    #[schema(min_items = 1, max_items = 10_000)]
+    #[schema(min_items = 1, max_items = 100)]
     pub lift_coefficient: Vec<Vec<f64>>,
     /// At least 0.
-    #[schema(min_items = 1, max_items = 10_000)]
+    #[schema(min_items = 1, max_items = 100)]
     pub drag_coefficient: Vec<Vec<f64>>,
     /// The same, for the core.
     #[serde(skip)]
@@ -201,16 +201,16 @@ impl BallisticAerodynamics {
 }
 
 /// Mach numbers, ascending.
-fn read_mach(object: &mut Object) -> Option<Vec<f64>> {
-    let mach = object.entries("mach", Bound::NON_NEGATIVE, 1);
+fn read_mach(object: &mut Object, most: usize) -> Option<Vec<f64>> {
+    let mach = object.entries("mach", Bound::NON_NEGATIVE, [1, most]);
     mach.filter(|mach| object.ascending("mach", "", mach))
 }
 
 impl MachTable {
     fn read(object: &mut Object) -> Option<Self> {
-        let mach = read_mach(object);
-        let lift_coefficient = object.entries("lift_coefficient", Bound::FINITE, 1);
-        let drag_coefficient = object.entries("drag_coefficient", Bound::NON_NEGATIVE, 1);
+        let mach = read_mach(object, MOST_ENTRIES);
+        let lift_coefficient = object.entries("lift_coefficient", Bound::FINITE, [1, MOST_ENTRIES]);
+        let drag_coefficient = object.entries("drag_coefficient", Bound::NON_NEGATIVE, [1, MOST_ENTRIES]);
         let sound = object.equally_long("mach", &["lift_coefficient", "drag_coefficient"]);
         let (mach, lift_coefficient, drag_coefficient) = (mach?, lift_coefficient?, drag_coefficient?);
         if !sound {
@@ -224,9 +224,9 @@ impl MachTable {
 
 impl AlphaMachTable {
     fn read(object: &mut Object) -> Option<Self> {
-        let angle_of_attack = object.angles("angle_of_attack", Bound::TURN);
+        let angle_of_attack = object.angles("angle_of_attack", Bound::TURN, MOST_ROWS);
         let angle_of_attack = angle_of_attack.filter(|angles| object.ascending("angle_of_attack", "", angles));
-        let mach = read_mach(object);
+        let mach = read_mach(object, MOST_COLUMNS);
         let lift_coefficient = object.matrix("lift_coefficient", Bound::FINITE, "mach");
         let drag_coefficient = object.matrix("drag_coefficient", Bound::NON_NEGATIVE, "mach");
         let sound = object.equally_long("angle_of_attack", &["lift_coefficient", "drag_coefficient"]);

@@ -7,7 +7,7 @@ use reentry::wind::{Wind as CoreWind, WindTable as CoreTable};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::reader::Object;
+use super::reader::{MOST_ENTRIES, Object};
 
 /// The velocity of the air relative to the rotating planet, along east and north of the plane normal to the radius.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -105,10 +105,10 @@ impl ConstantWind {
 
 impl TableWind {
     fn read(object: &mut Object) -> Option<Self> {
-        let altitude = object.entries("altitude", Bound::DISTANCE, 1);
+        let altitude = object.entries("altitude", Bound::DISTANCE, [1, MOST_ENTRIES]);
         let altitude = altitude.filter(|altitude| object.ascending("altitude", "", altitude));
-        let east = object.entries("east", Bound::WIND, 1);
-        let north = object.entries("north", Bound::WIND, 1);
+        let east = object.entries("east", Bound::WIND, [1, MOST_ENTRIES]);
+        let north = object.entries("north", Bound::WIND, [1, MOST_ENTRIES]);
         let sound = object.equally_long("altitude", &["east", "north"]);
         let (altitude, east, north) = (altitude?, east?, north?);
         if !sound {
