@@ -52,17 +52,10 @@ pub trait Scalar:
     fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
 
     /// What a table holds for the value: a row of numbers without derivatives, each lane its own.
-    #[inline(always)]
-    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
-        let [row] = Self::pick_rows([self], |[value]| [row(value)]);
-        row
-    }
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K];
 
-    /// What a table holds for several values together: rows of numbers without derivatives, each lane its own.
-    fn pick_rows<const N: usize, const K: usize, const R: usize>(
-        at: [Self; N],
-        rows: impl Fn([f64; N]) -> [[f64; K]; R],
-    ) -> [[Self; K]; R];
+    /// What a look-up gives for some arguments, each lane its own.
+    fn look_up<const N: usize, const K: usize>(at: [Self; N], table: &impl LookUp<N, K>) -> [Self; K];
 
     /// One over the number.
     #[must_use]
@@ -116,11 +109,13 @@ where
     }
 
     #[inline(always)]
-    fn pick_rows<const N: usize, const K: usize, const R: usize>(
-        at: [Self; N],
-        rows: impl Fn([f64; N]) -> [[f64; K]; R],
-    ) -> [[Self; K]; R] {
-        rows(at.map(|number| number.re())).map(|row| row.map(Self::from))
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        row(self.re()).map(Self::from)
+    }
+
+    #[inline(always)]
+    fn look_up<const N: usize, const K: usize>(at: [Self; N], table: &impl LookUp<N, K>) -> [Self; K] {
+        table.at(at)
     }
 
     #[inline(always)]
@@ -152,6 +147,12 @@ where
     fn atan2(self, x: Self) -> Self {
         DualNum::atan2(&self, x)
     }
+}
+
+/// `K` functions of `N` arguments that go by cells: which cell it is, depends on the values of the arguments.
+pub trait LookUp<const N: usize, const K: usize> {
+    /// The functions of arguments that have one value each.
+    fn at<S: Scalar<Value = f64, Mask = bool>>(&self, arguments: [S; N]) -> [S; K];
 }
 
 /// A number that can be added to and multiplied by a parameter: `f64`, or a number of its own kind.

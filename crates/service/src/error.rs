@@ -178,7 +178,8 @@ impl ApiError {
                 one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
             }
             Self::Flight(SimulationError::Chatter { switch, .. }) => {
-                let advice = "let the angle change along a line (\"interpolation\": \"linear\"), or against another quantity";
+                let advice =
+                    "let the angle change along a line (\"interpolation\": \"linear\"), or against another quantity";
                 match switch {
                     Switch::BankAngle => one("/control/bank_angle", advice.to_owned()),
                     Switch::AngleOfAttack => one("/control/angle_of_attack", advice.to_owned()),

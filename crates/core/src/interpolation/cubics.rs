@@ -1,7 +1,9 @@
 //! Interpolation by one argument.
 
+use std::array::from_fn;
+
 use super::{Axis, Cubic, Hint, TableError, check, cubics, polynomial};
-use crate::scalar::Scalar;
+use crate::scalar::{LookUp, Scalar};
 
 /// `K` functions of one argument.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,8 +82,23 @@ impl<const K: usize> Cubics<K> {
 
     #[inline(always)]
     fn inside<S: Scalar>(&self, x: S, hint: &Hint) -> [S; K] {
-        let x = self.axis.within_reach(x);
-        let cubics = S::pick_rows([x], |[x]| self.cells[self.axis.cell(x, hint)]);
-        cubics.map(|[origin, c0, c1, c2, c3]| polynomial(x - origin, [c0, c1, c2, c3]))
+        S::look_up([self.axis.within_reach(x)], &Inside { cubics: self, hint })
+    }
+}
+
+/// A look-up in the cells.
+struct Inside<'a, const K: usize> {
+    cubics: &'a Cubics<K>,
+    hint: &'a Hint,
+}
+
+impl<const K: usize> LookUp<1, K> for Inside<'_, K> {
+    #[inline(always)]
+    fn at<S: Scalar<Value = f64, Mask = bool>>(&self, [x]: [S; 1]) -> [S; K] {
+        let cell = &self.cubics.cells[self.cubics.axis.cell(x.value(), self.hint)];
+        from_fn(|k| {
+            let [origin, coefficients @ ..] = cell[k];
+            polynomial(x - origin, coefficients)
+        })
     }
 }

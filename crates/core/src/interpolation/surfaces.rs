@@ -1,7 +1,9 @@
 //! Interpolation by two arguments.
 
-use super::{Axis, Cubic, Hint, TableError, check, cubics, polynomial, slope_at_end, slope_between};
-use crate::scalar::Scalar;
+use std::array::from_fn;
+
+use super::{AT_END, Axis, Hint, TableError, check, cubics, polynomial, slope_between};
+use crate::scalar::{LookUp, Scalar};
 
 /// Two functions of two arguments, of which the table has a row for every value of the first.
 ///
@@ -17,8 +19,10 @@ pub struct Surfaces {
     second: Axis,
     /// Of every cell of the first argument.
     across: Vec<Across>,
-    /// Of every cell of the second argument the cubics of all rows, both functions.
-    along: Vec<[Cubic; 2]>,
+    /// Where the cells of the second argument begin.
+    origins: Vec<f64>,
+    /// Of every cell of the second argument the cubics of all rows: of both functions side by side, from the constant on.
+    along: Vec<[[f64; 2]; 4]>,
     /// How many rows there are.
     rows: usize,
 }
@@ -26,12 +30,14 @@ pub struct Surfaces {
 /// What leads from row to row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Across {
-    /// The first argument on the row before.
-    origin: f64,
-    /// One over the widths of the neighbour before, the cell itself and the neighbour after; 0 where there is none.
-    per_width: [f64; 3],
-    /// The weights of the secants before, on the row before and on the row after; -1 on the first and on the last row.
+    /// The first argument on the row before, and one over the width of the cell.
+    cell: [f64; 2],
+    /// One over the widths of the neighbours before and after; 0 where there is none.
+    per_width: [f64; 2],
+    /// The weights of the secants before, on the row before and on the row after.
     weights: [f64; 2],
+    /// On the first and on the last row, to which no secant leads, so much of the cell's secant and of the slope on the other row.
+    ends: [[f64; 2]; 2],
     /// Where the cubics of four rows begin: those on both sides, and their neighbours as far as there are any.
     rows: [usize; 4],
 }
@@ -51,23 +57,29 @@ impl Surfaces {
         }
         let rows = first.len();
         let (first_axis, second_axis) = (Axis::new(first), Axis::new(second));
-        let mut along = vec![[[0.0; 5]; 2]; second_axis.cells() * rows];
+        let mut origins = vec![0.0; second_axis.cells()];
+        let mut along = vec![[[0.0; 2]; 4]; second_axis.cells() * rows];
         for (k, matrix) in matrices.into_iter().enumerate() {
             for (number, row) in matrix.iter().enumerate() {
                 check(second, &[row]).map_err(|error| in_matrix(error, number, second.len()))?;
-                for (cell, cubic) in cubics(second, row)?.into_iter().enumerate() {
-                    along[cell * rows + number][k] = cubic;
+                for (cell, [origin, cubic @ ..]) in cubics(second, row)?.into_iter().enumerate() {
+                    origins[cell] = origin;
+                    for (both, coefficient) in along[cell * rows + number].iter_mut().zip(cubic) {
+                        both[k] = coefficient;
+                    }
                 }
             }
         }
         let across: Vec<_> = (0..first_axis.cells()).map(|cell| Across::of(first, cell)).collect();
         let greatest =
             matrices.into_iter().flatten().flatten().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
-        let too_steep =
-            |across: &Across| across.per_width.iter().any(|per| !(16.0 * greatest * per * per.max(1.0)).is_finite());
+        let too_steep = |across: &Across| {
+            let per_width = across.per_width.into_iter().chain([across.cell[1]]);
+            per_width.into_iter().any(|per| !(16.0 * greatest * per * per.max(1.0)).is_finite())
+        };
         match across.iter().position(too_steep) {
             Some(index) => Err(TableError::TooSteep { index }),
-            None => Ok(Self { first: first_axis, second: second_axis, across, along, rows }),
+            None => Ok(Self { first: first_axis, second: second_axis, across, origins, along, rows }),
         }
     }
 
@@ -86,28 +98,25 @@ impl Surfaces {
         };
         let x = inside(&self.first, stretches[0], arguments[0]);
         let y = inside(&self.second, stretches[1], arguments[1]);
-        let picked = S::pick_rows([x, y], |[x, y]| {
-            let across = self.across[self.first.cell(x, &hints[0])];
-            let begin = self.second.cell(y, &hints[1]) * self.rows;
-            let ([before, own, after], [w0, w1]) = (across.per_width, across.weights);
-            let [a, b, c, d] = across.rows.map(|row| self.along[begin + row]);
-            let extended = |[origin, c0, c1, c2, c3]: Cubic| [origin, c0, c1, c2, c3, 0.0];
-            let [row_a, row_b, row_c, row_d] = [a, b, c, d].map(|row| row.map(extended));
-            [
-                [across.origin, before, own, after, w0, w1],
-                row_a[0],
-                row_b[0],
-                row_c[0],
-                row_d[0],
-                row_a[1],
-                row_b[1],
-                row_c[1],
-                row_d[1],
-            ]
-        });
-        let [cell, a0, b0, c0, d0, a1, b1, c1, d1] = picked;
-        let value = |[origin, c0, c1, c2, c3, _]: [S; 6]| polynomial(y - origin, [c0, c1, c2, c3]);
-        [[a0, b0, c0, d0], [a1, b1, c1, d1]].map(|rows| between_rows(x, cell, rows.map(value)))
+        S::look_up([x, y], &Inside { surfaces: self, hints })
+    }
+}
+
+/// A look-up in the cells.
+struct Inside<'a> {
+    surfaces: &'a Surfaces,
+    hints: &'a [Hint; 2],
+}
+
+impl LookUp<2, 2> for Inside<'_> {
+    #[inline(always)]
+    fn at<S: Scalar<Value = f64, Mask = bool>>(&self, [x, y]: [S; 2]) -> [S; 2] {
+        let Surfaces { first, second, across, origins, along, rows } = self.surfaces;
+        let across = &across[first.cell(x.value(), &self.hints[0])];
+        let cell = second.cell(y.value(), &self.hints[1]);
+        let y = y - origins[cell];
+        let cubics = across.rows.map(|row| &along[cell * rows + row]);
+        from_fn(|k| across.between_rows(x, cubics.map(|cubic| polynomial(y, cubic.map(|both| both[k])))))
     }
 }
 
@@ -129,29 +138,40 @@ impl Across {
         let widths = [width(cell.checked_sub(1)), width(Some(cell)), width(Some(cell + 1))];
         let weight = |before: Option<f64>, after: Option<f64>| match (before, after) {
             (Some(before), Some(after)) => after / (before + after),
-            _ => -1.0,
+            _ => 0.0,
         };
+        // Of two rows alone both slopes are the secant.
+        let end = |own: Option<f64>, other: Option<f64>| match (own, other) {
+            (Some(_), _) => [0.0, 0.0],
+            (None, Some(_)) => AT_END,
+            (None, None) => [1.0, 0.0],
+        };
+        let [before, own, after] = widths;
+        let per = |width: Option<f64>| width.map_or(0.0, f64::recip);
         Self {
-            origin: abscissae[cell],
-            per_width: widths.map(|width| width.map_or(0.0, f64::recip)),
-            weights: [weight(widths[0], widths[1]), weight(widths[1], widths[2])],
+            cell: [abscissae[cell], per(own)],
+            per_width: [per(before), per(after)],
+            weights: [weight(before, own), weight(own, after)],
+            ends: [end(before, after), end(after, before)],
             rows: [cell.saturating_sub(1), cell, (cell + 1).min(last), (cell + 2).min(last)],
         }
     }
-}
 
-/// The cubic between the second and the third of four rows, from the values that they have.
-#[inline(always)]
-fn between_rows<S: Scalar>(x: S, [origin, before, own, after, w0, w1]: [S; 6], [a, b, c, d]: [S; 4]) -> S {
-    let secant = (c - b) * own;
-    let on_first = w0.less_than(0.0);
-    let on_last = w1.less_than(0.0);
-    // Of two rows alone both slopes are the secant.
-    let inner0 = S::select(on_first, secant, slope_between((b - a) * before, secant, w0));
-    let inner1 = S::select(on_last, secant, slope_between(secant, (d - c) * after, w1));
-    let slope0 = S::select(on_first, slope_at_end(secant, inner1), inner0);
-    let slope1 = S::select(on_last, slope_at_end(secant, inner0), inner1);
-    let bend = (secant * 3.0 - slope0 * 2.0 - slope1) * own;
-    let twist = (slope0 + slope1 - secant * 2.0) * own * own;
-    polynomial(x - origin, [b, slope0, bend, twist])
+    /// The cubic between the second and the third of four rows, from the values that they have.
+    ///
+    /// On the first and on the last row, the secant that does not exist is zero, and so is the slope that it gives.
+    #[inline(always)]
+    fn between_rows<S: Scalar>(&self, x: S, [a, b, c, d]: [S; 4]) -> S {
+        let Self { cell: [origin, own], per_width: [before, after], weights: [w0, w1], ends: [first, last], .. } =
+            *self;
+        let secant = (c - b) * own;
+        let inner0 = slope_between((b - a) * before, secant, w0);
+        let inner1 = slope_between(secant, (d - c) * after, w1);
+        let slope0 = inner0 + secant * first[0] + inner1 * first[1];
+        let slope1 = inner1 + secant * last[0] + inner0 * last[1];
+        let bend = (secant * 3.0 - slope0 * 2.0 - slope1) * own;
+        let twist = (slope0 + slope1 - secant * 2.0) * (own * own);
+        let x = x - origin;
+        ((twist * x + bend) * x + slope0) * x + b
+    }
 }

@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use super::Scalar;
+use super::{LookUp, Scalar};
 
 /// `L` numbers that go through the same operations, each by itself: lane by lane the digits are those of `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,12 +121,15 @@ impl<const L: usize> Scalar for Lanes<L> {
     }
 
     #[inline(always)]
-    fn pick_rows<const N: usize, const K: usize, const R: usize>(
-        at: [Self; N],
-        rows: impl Fn([f64; N]) -> [[f64; K]; R],
-    ) -> [[Self; K]; R] {
-        let picked: [_; L] = from_fn(|lane| rows(at.map(|number| number.0[lane])));
-        from_fn(|row| from_fn(|k| Self(from_fn(|lane| picked[lane][row][k]))))
+    fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
+        let rows = self.0.map(row);
+        from_fn(|k| Self(from_fn(|lane| rows[lane][k])))
+    }
+
+    #[inline(always)]
+    fn look_up<const N: usize, const K: usize>(at: [Self; N], table: &impl LookUp<N, K>) -> [Self; K] {
+        let found: [[f64; K]; L] = from_fn(|lane| table.at(at.map(|number| number.0[lane])));
+        from_fn(|k| Self(from_fn(|lane| found[lane][k])))
     }
 
     #[inline(always)]
