@@ -44,7 +44,7 @@ fn theory(solution: Solution, case: Case) -> Theory {
 }
 
 fn compare(solution: Solution, case: Case, rows: usize) -> (Vec<FlightPoint>, Comparison) {
-    let flight = fly(case.clone());
+    let flight = fly(&case);
     let points = flight.points(&flight.instants(&Sampling::Count(rows), rows).unwrap());
     let comparison = theory(solution, case).compare(&flight, &points, &AtomicBool::new(false)).unwrap();
     (points, comparison)
@@ -116,7 +116,7 @@ fn theory_and_simulation_differ_as_much_as_they_should() {
 
 /// A state whose density has the given η, for a vehicle of this case; all else is of no account to the theories but for Loh's.
 fn at(case: &Case, eta: f64, speed: f64) -> FlightPoint {
-    let mut point = fly(Case { stop: Stop { altitude: 0.0, time: 1e-3 }, ..case.clone() }).initial();
+    let mut point = fly(&Case { stop: Stop { altitude: 0.0, time: 1e-3 }, ..case.clone() }).initial();
     let Aerodynamics::Constant { drag_coefficient, .. } = case.vehicle.aerodynamics else { panic!("{case:?}") };
     let beta = 1.0 / case.atmosphere.scale_height();
     // (76) η = ρSC_D / (2mβ)
@@ -133,9 +133,9 @@ fn values(prediction: Prediction, eta: f64) -> [f64; 3] {
 }
 
 /// V² and γ, and their slopes by η.
-fn slopes(solution: Solution, case: Case, eta: f64) -> [f64; 4] {
+fn slopes(solution: Solution, case: &Case, eta: f64) -> [f64; 4] {
     let theory = theory(solution, case.clone());
-    let at = |eta: f64| values(theory.prediction(&at(&case, eta, 0.0)).unwrap(), eta);
+    let at = |eta: f64| values(theory.prediction(&at(case, eta, 0.0)).unwrap(), eta);
     let [speed_squared, gamma, drag] = at(eta);
     relative("equations 79, 83 and 90", drag, 1.0, 1e-14);
     // A step at which the error of the difference, h²/6 times the third derivative, and rounding are both near 1e-10.
@@ -150,7 +150,7 @@ fn slopes(solution: Solution, case: Case, eta: f64) -> [f64; 4] {
 fn steep_glide_solves_the_equations_of_lift_and_drag() {
     let case = table(5, LISTING);
     for eta in [1e-4, 1e-3, 5e-3, 1e-2] {
-        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::SteepGlide, case.clone(), eta);
+        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::SteepGlide, &case, eta);
         relative("d(cos γ)/dη", -gamma.sin() * gamma_slope, 3.0, 1e-7);
         relative("dV²/dη", speed_slope, 2.0 * speed_squared / gamma.sin(), 1e-5);
     }
@@ -210,7 +210,7 @@ fn steep_ballistic_solves_the_equation_of_drag_and_gravity() {
 #[test]
 fn shallow_glide_keeps_its_balance() {
     for eta in [1e-3, 5e-3, 1e-2, 3e-2] {
-        let [speed_squared, gamma, speed_slope, _] = slopes(Solution::ShallowGlide, table(4, LISTING), eta);
+        let [speed_squared, gamma, speed_slope, _] = slopes(Solution::ShallowGlide, &table(4, LISTING), eta);
         near("weight", BETA * eta * 0.5 * speed_squared, 9.798 - speed_squared / 6_378_137.0, 1e-13 * 9.798);
         relative("γ dV²/dη", gamma * speed_slope, 2.0 * speed_squared, 1e-7);
     }
@@ -222,7 +222,7 @@ fn medium_glide_is_consistent_with_itself_and_its_equation() {
     let case = table(7, LISTING);
     let excess = (1.0 - 9.798 * 6_378_137.0 / 9847.0_f64.powi(2)) / (BETA * 6_378_137.0);
     for eta in [1e-3, 1e-2, 0.1, 0.5] {
-        let [speed_squared, gamma, _, gamma_slope] = slopes(Solution::MediumGlide, case.clone(), eta);
+        let [speed_squared, gamma, _, gamma_slope] = slopes(Solution::MediumGlide, &case, eta);
         let turning = -gamma * gamma_slope;
         relative("K", turning, 0.25 + excess / eta, 1e-6);
         let fall = 2.0 * ((-35.0_f64).to_radians() - gamma) / turning;
@@ -233,7 +233,7 @@ fn medium_glide_is_consistent_with_itself_and_its_equation() {
     let entry = FlightPath { speed: circular, ..FlightPath::from_planet_fixed(&case.initial_state) };
     let case = Case { initial_state: entry.to_planet_fixed(), ..case };
     for eta in [1e-2, 0.1, 0.5] {
-        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::MediumGlide, case.clone(), eta);
+        let [speed_squared, gamma, speed_slope, gamma_slope] = slopes(Solution::MediumGlide, &case, eta);
         relative("d(γ²)/dη", 2.0 * gamma * gamma_slope, -0.5, 1e-6);
         relative("dV²/dη", speed_slope, 2.0 * speed_squared / gamma, 1e-6);
     }
@@ -354,7 +354,7 @@ fn what_no_number_holds_is_no_prediction() {
     assert_eq!(prediction, Err(End::Overflow));
     // Loh's g₀r₀/V² at rest, at entry 1/0 times 0.
     let loh = table(4, LISTING);
-    let mut entry = fly(loh.clone()).initial();
+    let mut entry = fly(&loh).initial();
     entry.flight_path.speed = 0.0;
     assert_eq!(theory(Solution::Loh, loh).prediction(&entry), Err(End::Overflow));
 }
@@ -432,7 +432,7 @@ proptest! {
             let mass = mass * 10_f64.powf(light);
             let case = Case { vehicle: vehicle(mass, reference_area, lift_coefficient, drag_coefficient), ..case.clone() };
             let Ok(theory) = Theory::new(solution, &Scenario::new(case.clone()).unwrap()) else { continue };
-            let flight = fly(case);
+            let flight = fly(&case);
             let points = flight.points(&flight.instants(&Sampling::PerStep(2), usize::MAX).unwrap());
             let Comparison { predictions, validity } = theory.compare(&flight, &points, &AtomicBool::new(false)).unwrap();
             let holds: Vec<_> = predictions.iter().map(|prediction| prediction.flight_path_angle.is_some()).collect();
@@ -486,7 +486,7 @@ fn the_stretch_does_not_depend_on_the_rows() {
         (Solution::SteepGlide, pull_up(0.03, 0.05, -0.1)),
         (Solution::MediumGlide, pull_up(0.03, 0.05, -0.1)),
     ] {
-        let flight = fly(case.clone());
+        let flight = fly(&case);
         let validity = |sampling: Sampling| {
             let instants = flight.instants(&sampling, usize::MAX).unwrap();
             theory(solution, case.clone())
@@ -498,7 +498,7 @@ fn the_stretch_does_not_depend_on_the_rows() {
         assert_eq!(validity(Sampling::Count(2)), dense, "{solution:?}");
         assert_eq!(validity(Sampling::Interval(1.7)), dense, "{solution:?}");
     }
-    let flight = fly(pull_up(0.03, 0.05, -0.1));
+    let flight = fly(&pull_up(0.03, 0.05, -0.1));
     let ends = flight.points(&[0.0, flight.end_time()]);
     let ending = theory(Solution::MediumGlide, pull_up(0.03, 0.05, -0.1))
         .compare(&flight, &ends, &AtomicBool::new(false))
@@ -510,6 +510,6 @@ fn the_stretch_does_not_depend_on_the_rows() {
 #[test]
 fn the_flag_ends_the_search_for_the_stretch() {
     let case = table(4, LISTING);
-    let interrupted = theory(Solution::Loh, case.clone()).compare(&fly(case), &[], &AtomicBool::new(true));
+    let interrupted = theory(Solution::Loh, case.clone()).compare(&fly(&case), &[], &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));
 }

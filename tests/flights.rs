@@ -55,12 +55,12 @@ pub(crate) fn spherical(case: Case) -> Case {
 
 /// Flies a sound case.
 #[track_caller]
-pub(crate) fn fly(case: Case) -> Trajectory {
-    try_to_fly(case.clone()).unwrap_or_else(|error| panic!("{error} in {case:?}"))
+pub(crate) fn fly(case: &Case) -> Trajectory {
+    try_to_fly(case).unwrap_or_else(|error| panic!("{error} in {case:?}"))
 }
 
 #[track_caller]
-pub(crate) fn try_to_fly(case: Case) -> Result<Trajectory, SimulationError> {
+pub(crate) fn try_to_fly(case: &Case) -> Result<Trajectory, SimulationError> {
     let scenario = Scenario::new(case.clone()).unwrap_or_else(|error| panic!("{error} in {case:?}"));
     simulate(&scenario, &AtomicBool::new(false))
 }

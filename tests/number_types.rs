@@ -107,7 +107,7 @@ proptest! {
 
     #[test]
     fn an_arrival_is_the_end_of_the_flight(case in random_entry()) {
-        let flight = fly(case.clone());
+        let flight = fly(&case);
         let end = arrival(&Scenario::new(case).unwrap(), &AtomicBool::new(false)).unwrap();
         prop_assert_eq!(end.time.to_bits(), flight.end_time().to_bits());
         prop_assert_eq!(FlightPath::from_planet_fixed(&end.state).wrapped(), flight.last().flight_path);
@@ -147,7 +147,7 @@ fn sensitivities(flight: &Trajectory) -> Sensitivities {
 
 /// The arrival's time, longitude, geocentric latitude, speed and flight-path angle.
 fn outputs(case: Case) -> [f64; 5] {
-    let flight = fly(with_tolerance(case, 1e-13));
+    let flight = fly(&with_tolerance(case, 1e-13));
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } = flight.last().flight_path;
     [flight.end_time(), longitude, geocentric_latitude, speed, flight_path_angle]
 }
@@ -198,7 +198,7 @@ fn rows(sensitivities: &Sensitivities) -> [[f64; 12]; 5] {
 
 /// Central differences of flights at 1e-13, whose error is that of their second order and some rounding.
 fn agrees_with_differences(what: &str, case: &Case) {
-    let slopes = rows(&sensitivities(&fly(case.clone())));
+    let slopes = rows(&sensitivities(&fly(case)));
     // Steps that move the impact by metres.
     let steps = [
         1e-5 * case.vehicle.mass,
@@ -234,7 +234,7 @@ fn sensitivities_are_the_slopes_of_the_impact() {
     agrees_with_differences("spherical", &spherical(ellipsoid.clone()));
     let timed = Case { stop: Stop { time: 70.0, ..Stop::default() }, ..ellipsoid.clone() };
     agrees_with_differences("to a given time", &timed);
-    assert!(rows(&sensitivities(&fly(timed.clone())))[0].iter().all(|slope| *slope == 0.0), "the time is given");
+    assert!(rows(&sensitivities(&fly(&timed)))[0].iter().all(|slope| *slope == 0.0), "the time is given");
     // Slopes by coefficients and densities of zero are those on the one side that there is: the other quantities are enough.
     let ballistic = Case { vehicle: vehicle(700.0, 0.216_419, 0.0, 0.2), ..ellipsoid.clone() };
     agrees_with_differences("without lift", &ballistic);
@@ -268,7 +268,7 @@ fn sensitivities_of_a_stone_thrown_upward_are_those_of_the_textbook() {
     let stone =
         Case { planet, initial_state: up.to_planet_fixed(), control: Control::banked(0.0), ..in_vacuum(target_2()) };
     let stone = Case { vehicle: vehicle(1.0, 0.01, 0.0, 1.0), ..stone };
-    let flight = fly(stone);
+    let flight = fly(&stone);
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
     let slopes = sensitivities(&flight);
     let gravity = planet.gravitational_parameter / (radius * radius);
@@ -292,7 +292,7 @@ fn sensitivities_of_a_flight_that_ends_at_its_start_are_those_of_what_follows() 
     let start = FlightPath::from_planet_fixed(&target_2().initial_state);
     let (speed, flight_path_angle) = (100.0, -0.05);
     let ground = FlightPath { radius: 6_378_137.0, speed, flight_path_angle, ..start };
-    let flight = fly(Case { initial_state: ground.to_planet_fixed(), ..target_2() });
+    let flight = fly(&Case { initial_state: ground.to_planet_fixed(), ..target_2() });
     assert_eq!(flight.end_time().to_bits(), 0);
     let slopes = sensitivities(&flight);
     let sink_rate = speed * f64::sin(0.05);
@@ -314,7 +314,7 @@ fn what_is_undefined_has_no_slope() {
             heading: 0.0,
         };
         let case = Case { planet, initial_state: start.to_planet_fixed(), control: Control::banked(0.0), ..target_2() };
-        sensitivities(&fly(Case { vehicle: vehicle(10.0, 0.01, 0.0, 1.0), ..case }))
+        sensitivities(&fly(&Case { vehicle: vehicle(10.0, 0.01, 0.0, 1.0), ..case }))
     };
     let finite = |gradient: &Gradient| gradient.mass.is_finite();
     for latitude in [0.0, 0.2, -1.2] {
@@ -332,6 +332,6 @@ fn what_is_undefined_has_no_slope() {
 
 #[test]
 fn the_flag_ends_the_sensitivities_as_well() {
-    let interrupted = sensitivity::sensitivities(&fly(target_2()), &AtomicBool::new(true));
+    let interrupted = sensitivity::sensitivities(&fly(&target_2()), &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));
 }

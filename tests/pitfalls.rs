@@ -20,13 +20,13 @@ fn starting(case: Case, state: FlightPath<f64>) -> Case {
 /// TARGET case 2 dips to 214 m at 79 s, climbs to 4 km and lands at 157 s: a sign test at the ends of steps misses the dip.
 #[test]
 fn a_grazing_impact_is_an_impact() {
-    let through = fly(target_2());
+    let through = fly(&target_2());
     near("without ground in the dip", through.end_time(), 157.436, 1e-3);
     for tolerance in [1e-3, 1e-6, 1e-8, 1e-10, 1e-12] {
         for altitude in [250.0, 300.0, 500.0, 1000.0, 3000.0] {
             let case = with_tolerance(target_2(), tolerance);
             let case = Case { stop: Stop { altitude, ..case.stop }, ..case };
-            let flight = fly(case);
+            let flight = fly(&case);
             let what = format!("ground at {altitude} m, tolerance {tolerance:e}");
             assert_eq!(flight.termination(), Termination::SurfaceImpact, "{what}");
             assert!(flight.end_time() < 80.0, "{what}: {} s", flight.end_time());
@@ -34,14 +34,14 @@ fn a_grazing_impact_is_an_impact() {
         }
     }
     let above_the_dip = Case { stop: Stop { altitude: 200.0, time: 1e4 }, ..target_2() };
-    assert!(fly(above_the_dip).end_time() > 150.0);
+    assert!(fly(&above_the_dip).end_time() > 150.0);
 }
 
 #[test]
 fn the_impact_lies_on_the_ground_at_every_tolerance() {
     for tolerance in [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13] {
         for case in [target_2(), spherical(target_2())] {
-            let flight = fly(with_tolerance(case, tolerance));
+            let flight = fly(&with_tolerance(case, tolerance));
             near(&format!("{tolerance:e}"), flight.last().loads.altitude, 0.0, 1e-8);
         }
     }
@@ -52,12 +52,12 @@ fn the_impact_lies_on_the_ground_at_every_tolerance() {
 fn the_state_at_the_impact_is_more_accurate_than_the_dense_output() {
     // The same flight into a pit passes the ground inside a step.
     let pit = Case { stop: Stop { altitude: -3000.0, time: 1e4 }, ..target_2() };
-    let exact = fly(with_tolerance(pit.clone(), 1e-14));
+    let exact = fly(&with_tolerance(pit.clone(), 1e-14));
     let place = |point: reentry::trajectory::FlightPoint| point.flight_path.to_planet_fixed().position;
     let [mut on_dense, mut on_step] = [0.0; 2];
     for tolerance in [1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9] {
-        let impact = fly(with_tolerance(target_2(), tolerance));
-        let passing = fly(with_tolerance(pit.clone(), tolerance));
+        let impact = fly(&with_tolerance(target_2(), tolerance));
+        let passing = fly(&with_tolerance(pit.clone(), tolerance));
         let time = impact.end_time();
         on_step += ((place(impact.last()) - place(exact.at(time))).norm() / tolerance).ln();
         on_dense += ((place(passing.at(time)) - place(exact.at(time))).norm() / tolerance).ln();
@@ -85,8 +85,8 @@ fn the_density_is_finite_at_every_altitude() {
         Case { vehicle: vehicle(1e6, 0.01, 0.0, 0.1), ..target_2() },
         FlightPath { speed: 1e6, flight_path_angle: -1.5, ..FlightPath::from_planet_fixed(&target_2().initial_state) },
     );
-    let exact = fly(with_tolerance(dart.clone(), 1e-13));
-    let flight = fly(with_tolerance(dart, 1e-3));
+    let exact = fly(&with_tolerance(dart.clone(), 1e-13));
+    let flight = fly(&with_tolerance(dart, 1e-3));
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
     // A thousandth of the circular speed over the 0.12 s of this flight.
     assert!(miss(&flight, &exact) < 1.0, "{} m", miss(&flight, &exact));
@@ -108,12 +108,12 @@ fn the_atmosphere_is_not_jumped_over() {
             FlightPath { radius, longitude: 0.0, geocentric_latitude: 0.0, speed, flight_path_angle, heading: 0.3 };
         let case = starting(Case { planet, vehicle: vehicle(5000.0, 10.0, 0.0, 1.0), ..target_2() }, state);
         let case = Case { stop: Stop { altitude: 0.0, time: 60_000.0 }, ..case };
-        let exact = fly(with_tolerance(case.clone(), 1e-13));
-        let coasting = fly(with_tolerance(in_vacuum(case.clone()), 1e-13));
+        let exact = fly(&with_tolerance(case.clone(), 1e-13));
+        let coasting = fly(&with_tolerance(in_vacuum(case.clone()), 1e-13));
         let lost = coasting.last().flight_path.speed - exact.last().flight_path.speed;
         assert!(lost > speed_lost, "{perigee}: the air takes {lost} m/s");
         for tolerance in [1e-3, 1e-4, 1e-6, 1e-8] {
-            let flight = fly(with_tolerance(case.clone(), tolerance));
+            let flight = fly(&with_tolerance(case.clone(), tolerance));
             let error = (flight.peaks().deceleration.value / exact.peaks().deceleration.value - 1.0).abs();
             assert!(error < 0.1, "{perigee}, {tolerance:e}: peak deceleration off by {error}");
         }
@@ -129,7 +129,7 @@ fn negative_lift_ends_in_the_vertical_and_not_in_chatter() {
         Case { vehicle: vehicle(700.0, 0.216_419, -0.5, 0.2), control: Control::banked(0.0), ..target_2() },
         state,
     );
-    let flight = fly(diving);
+    let flight = fly(&diving);
     assert_eq!(flight.termination(), Termination::SurfaceImpact);
     assert!(flight.statistics().steps < 500, "{:?}", flight.statistics());
     let [Warning::LiftFadedNearVertical { time }] = flight.warnings() else {
@@ -140,7 +140,7 @@ fn negative_lift_ends_in_the_vertical_and_not_in_chatter() {
     near("at the warning", angle(*time), 1e-3, 1e-9);
     assert!(angle(time - 0.01) > 1e-3 && angle(time + 1e-4) < 1e-3);
     // The same lift without its fade would not be the same: the fade is felt only in the cone.
-    assert!(fly(target_2()).warnings().is_empty());
+    assert!(fly(&target_2()).warnings().is_empty());
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn the_cartesian_formulation_flies_over_poles_from_rest_and_straight_down() {
     let straight_down = FlightPath { flight_path_angle: -FRAC_PI_2, ..level };
     let straight_up = FlightPath { flight_path_angle: FRAC_PI_2, speed: 500.0, ..level };
     for state in [over_the_pole, at_the_pole, at_rest, straight_down, straight_up] {
-        let flight = fly(starting(target_2(), state));
+        let flight = fly(&starting(target_2(), state));
         assert_eq!(flight.termination(), Termination::SurfaceImpact, "{state:?}");
         assert!(flight.statistics().steps < 1000, "{state:?}: {:?}", flight.statistics());
     }
@@ -169,7 +169,7 @@ fn the_spherical_formulation_refuses_its_singularities_by_name() {
         (FlightPath { speed: 0.0, ..level }, Singularity::Rest),
     ];
     for (state, singularity) in cases {
-        let error = try_to_fly(spherical(starting(target_2(), state))).unwrap_err();
+        let error = try_to_fly(&spherical(starting(target_2(), state))).unwrap_err();
         assert_eq!(error, SimulationError::Singularity { time: 0.0, at: singularity }, "{state:?}");
     }
 }
@@ -186,9 +186,9 @@ fn the_spherical_formulation_never_hangs_or_errs_near_its_singularities() {
         for state in [over_the_pole, through_the_top] {
             let ballistic = Case { planet, vehicle: vehicle(700.0, 0.216_419, 0.0, 0.2), ..target_2() };
             let case = starting(ballistic, state);
-            match try_to_fly(spherical(case.clone())) {
+            match try_to_fly(&spherical(case.clone())) {
                 Ok(flight) => {
-                    let error = miss(&flight, &fly(case));
+                    let error = miss(&flight, &fly(&case));
                     assert!(error < 1.0, "{miss_by:e}, {state:?}: {error} m");
                 }
                 Err(SimulationError::Singularity { .. }) => {
@@ -209,12 +209,12 @@ fn a_flight_that_never_lands_ends_with_its_time() {
         ..FlightPath::from_planet_fixed(&target_2().initial_state)
     };
     let case = starting(in_vacuum(target_2()), orbit);
-    let flight = fly(Case { stop: Stop { altitude: 0.0, time: 20_000.0 }, ..case.clone() });
+    let flight = fly(&Case { stop: Stop { altitude: 0.0, time: 20_000.0 }, ..case.clone() });
     assert_eq!(flight.termination(), Termination::TimeLimit);
     near("the end", flight.end_time(), 20_000.0, 0.0);
 
     let long = Case { stop: Stop { altitude: 0.0, time: 1e9 }, ..case };
-    let error = try_to_fly(long).unwrap_err();
+    let error = try_to_fly(&long).unwrap_err();
     // 100 000 steps of some 200 s.
     assert!(matches!(error, SimulationError::StepLimit { limit: 100_000, time } if time < 1e8), "{error}");
 }
@@ -268,16 +268,16 @@ fn a_start_on_the_ground_flies_only_upward() {
             flight_path_angle,
             ..on_ground
         };
-        let hop = fly(starting(ballistic.clone(), at(0.5, 300.0)));
+        let hop = fly(&starting(ballistic.clone(), at(0.5, 300.0)));
         assert!(hop.end_time() > 10.0, "{above}: {}", hop.end_time());
         near("back on the ground", hop.last().loads.altitude, 0.0, 1e-8);
         for landed in [at(-0.5, 300.0), at(0.0, 300.0), at(0.0, 0.0)] {
-            let flight = fly(starting(ballistic.clone(), landed));
+            let flight = fly(&starting(ballistic.clone(), landed));
             assert_eq!(flight.termination(), Termination::SurfaceImpact);
             near("at once", flight.end_time(), 0.0, 0.0);
         }
         // Level, but faster than a satellite: the ground falls away.
-        let off = fly(Case {
+        let off = fly(&Case {
             stop: Stop { altitude: 0.0, time: 5.0 },
             ..in_vacuum(starting(ballistic.clone(), at(0.0, 9000.0)))
         });
@@ -292,7 +292,7 @@ fn a_start_on_the_ground_flies_only_upward() {
 #[test]
 fn peaks_are_found_between_rows_and_steps() {
     for tolerance in [1e-4, 1e-6, 1e-10] {
-        let flight = fly(with_tolerance(target_2(), tolerance));
+        let flight = fly(&with_tolerance(target_2(), tolerance));
         let end = flight.end_time();
         let times: Vec<_> = (0..=20_000).map(|i| end * f64::from(i) / 20_000.0).collect();
         let points = flight.points(&times);
@@ -329,7 +329,7 @@ fn light_bodies_stay_in_the_air_at_loose_tolerances() {
             let state = FlightPath { radius: 6_378_137.0 + altitude, speed: 5000.0, flight_path_angle: -1.5, ..entry };
             let case = starting(Case { vehicle: vehicle(mass, area, 0.0, 1.0), ..target_2() }, state);
             let case = Case { stop: Stop { altitude: 0.0, time: 300.0 }, ..case };
-            let flight = fly(with_tolerance(case, tolerance));
+            let flight = fly(&with_tolerance(case, tolerance));
             let times = flight.instants(&Sampling::PerStep(16), usize::MAX).unwrap();
             for point in flight.points(&times) {
                 let what = format!("{mass} kg, {area} m², {tolerance:e} at {} s", point.time);
@@ -354,6 +354,6 @@ fn a_supercircular_level_start_flies_whatever_its_rounding() {
             heading: f64::from(degrees) * 0.03,
         };
         let case = Case { stop: Stop { altitude: 0.0, time: 10.0 }, ..in_vacuum(starting(target_2(), state)) };
-        assert_eq!(fly(case).termination(), Termination::TimeLimit, "{state:?}");
+        assert_eq!(fly(&case).termination(), Termination::TimeLimit, "{state:?}");
     }
 }

@@ -31,7 +31,7 @@ proptest! {
     fn the_vacuum_invariant_is_constant_in_both_formulations(case in random_entry()) {
         for case in [in_vacuum(case.clone()), spherical(in_vacuum(case))] {
             // The tolerance counts per step; a flight has some tens of steps, and the invariant terms of 6e7 J/kg.
-            let flight = fly(with_tolerance(case.clone(), 1e-12));
+            let flight = fly(&with_tolerance(case.clone(), 1e-12));
             let start = jacobi_integral(&case, &flight.initial().flight_path);
             for state in evenly(&flight, 20) {
                 near("V²/2 - ω²r²cos²φ/2 - GM/r", jacobi_integral(&case, &state), start, 1e-9 * 6e7);
@@ -43,11 +43,11 @@ proptest! {
     fn twin_formulations_agree(case in random_entry()) {
         let case = with_tolerance(case, 1e-12);
         // The spherical one may meet the vertical, where the other one has its fade: that is a test of its own.
-        let flight = fly(case.clone());
+        let flight = fly(&case);
         prop_assume!(flight.warnings().is_empty());
         let nearly_vertical = evenly(&flight, 200).iter().any(|state| state.flight_path_angle.cos() < 0.02);
         prop_assume!(!nearly_vertical);
-        let twin = fly(spherical(case));
+        let twin = fly(&spherical(case));
         prop_assert_eq!(flight.termination(), twin.termination());
         // A centimetre at 1e-12 is the promise, to both.
         prop_assert!(miss(&flight, &twin) < 0.02, "{} m", miss(&flight, &twin));
@@ -62,7 +62,7 @@ proptest! {
             initial_state: PlanetFixed { position: rotation * position, velocity: rotation * velocity },
             ..case.clone()
         };
-        let (flight, turned) = (fly(with_tolerance(case, 1e-12)).last(), fly(with_tolerance(turned, 1e-12)).last());
+        let (flight, turned) = (fly(&with_tolerance(case, 1e-12)).last(), fly(&with_tolerance(turned, 1e-12)).last());
         let (a, b) = (flight.flight_path, turned.flight_path);
         near("time", turned.time, flight.time, 1e-6);
         // A centimetre each.
@@ -73,7 +73,7 @@ proptest! {
 
     #[test]
     fn rows_do_not_change_the_flight(case in random_entry(), count in 2_usize..50) {
-        let flight = fly(case);
+        let flight = fly(&case);
         for sampling in [Sampling::Count(count), Sampling::PerStep(count), Sampling::Interval(7.0)] {
             let times = flight.instants(&sampling, usize::MAX).unwrap();
             prop_assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
@@ -89,7 +89,7 @@ proptest! {
 
     #[test]
     fn loads_follow_from_their_definitions(case in random_entry()) {
-        let flight = fly(with_tolerance(case.clone(), 1e-12));
+        let flight = fly(&with_tolerance(case.clone(), 1e-12));
         let Vehicle { mass, reference_area, aerodynamics } = case.vehicle;
         let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = aerodynamics else {
             panic!("{aerodynamics:?}")
@@ -148,7 +148,7 @@ fn positive_bank_turns_the_flight_to_the_left() {
             stop: Stop { altitude: 0.0, time: 60.0 },
             ..target_2()
         };
-        fly(case).last().flight_path.heading
+        fly(&case).last().flight_path.heading
     };
     let straight = heading(0.0);
     assert!(heading(0.8) > straight + 0.01);
@@ -171,7 +171,7 @@ fn upward_lift_makes_a_shallow_entry_skip() {
         let vehicle = Vehicle { mass: 2000.0, reference_area: 10.0, aerodynamics };
         let case =
             Case { vehicle, control: Control::banked(0.0), initial_state: shallow.to_planet_fixed(), ..target_2() };
-        let flight = fly(case);
+        let flight = fly(&case);
         // Rows of a second: does it ever climb?
         let times = flight.instants(&Sampling::Interval(1.0), 100_000).unwrap();
         flight.points(&times).windows(2).any(|pair| pair[1].loads.altitude > pair[0].loads.altitude)

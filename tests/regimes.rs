@@ -48,10 +48,10 @@ fn end(flight: &Trajectory) -> Case {
 #[test]
 fn a_step_in_time_is_two_flights() {
     let steps = banked_by(schedule(Against::Time, &[0.0, 150.0, 400.0], &[0.9, -0.6, 0.2], Interpolation::Step), glide());
-    let whole = fly(with_tolerance(steps, 1e-12));
+    let whole = fly(&with_tolerance(steps, 1e-12));
     let leg = |case: Case, bank: f64, time: f64| {
         let stop = Stop { time, ..Stop::default() };
-        fly(with_tolerance(Case { control: Control::banked(bank), stop, ..case }, 1e-12))
+        fly(&with_tolerance(Case { control: Control::banked(bank), stop, ..case }, 1e-12))
     };
     let first = leg(glide(), 0.9, 150.0);
     let second = leg(end(&first), -0.6, 250.0);
@@ -64,11 +64,11 @@ fn a_step_in_time_is_two_flights() {
 #[test]
 fn a_step_in_altitude_is_two_flights() {
     let steps = banked_by(schedule(Against::Altitude, &[0.0, 50e3], &[0.2, 0.9], Interpolation::Step), glide());
-    let whole = fly(with_tolerance(steps, 1e-12));
+    let whole = fly(&with_tolerance(steps, 1e-12));
     let stop = Stop { altitude: 50e3, ..Stop::default() };
-    let first = fly(with_tolerance(Case { control: Control::banked(0.9), stop, ..glide() }, 1e-12));
+    let first = fly(&with_tolerance(Case { control: Control::banked(0.9), stop, ..glide() }, 1e-12));
     assert_eq!(first.termination(), Termination::SurfaceImpact);
-    let second = fly(with_tolerance(Case { control: Control::banked(0.2), ..end(&first) }, 1e-12));
+    let second = fly(&with_tolerance(Case { control: Control::banked(0.2), ..end(&first) }, 1e-12));
     near("time", whole.end_time(), first.end_time() + second.end_time(), 1e-6);
     assert!(miss(&whole, &second) < 1e-4, "{} m", miss(&whole, &second));
 }
@@ -85,7 +85,7 @@ fn angles_follow_their_schedule() {
         Interpolation::Step => value[at.iter().filter(|at| **at <= speed).count().max(1) - 1],
     };
     for interpolation in [Interpolation::Linear, Interpolation::Step] {
-        let flight = fly(banked_by(schedule(Against::Speed, &at, &value, interpolation), glide()));
+        let flight = fly(&banked_by(schedule(Against::Speed, &at, &value, interpolation), glide()));
         let mut seen = Vec::new();
         for second in 0..900 {
             let point = flight.at(f64::from(second));
@@ -104,7 +104,7 @@ fn angles_follow_their_schedule() {
 /// and the end is as exact.
 #[test]
 fn changes_are_met_and_not_ground_down() {
-    let smooth = fly(glide()).statistics();
+    let smooth = fly(&glide()).statistics();
     for against in [Against::Time, Against::Altitude, Against::Speed] {
         let (first, last) = match against {
             Against::Time => (50.0, 800.0),
@@ -115,8 +115,8 @@ fn changes_are_met_and_not_ground_down() {
         let value: Vec<f64> = (0..20).map(|i| 0.6 + 0.3 * f64::from(i % 2)).collect();
         for interpolation in [Interpolation::Step, Interpolation::Linear] {
             let case = banked_by(schedule(against, &at, &value, interpolation), glide());
-            let flight = fly(case.clone());
-            let exact = fly(with_tolerance(case, 1e-13));
+            let flight = fly(&case);
+            let exact = fly(&with_tolerance(case, 1e-13));
             let what = format!("{against:?} {interpolation:?}");
             let rejected = flight.statistics().rejected_steps;
             assert!(rejected <= smooth.rejected_steps + 20, "{what}: {rejected} after {}", smooth.rejected_steps);
@@ -131,8 +131,8 @@ fn a_jump_of_the_density_is_met_exactly() {
     let layer = |base_altitude: f64, density: f64| Layer { base_altitude, density, scale_height: 7000.0 };
     let layers = Layers::new(vec![layer(0.0, 1.2), layer(60e3, 1e-5)]).unwrap();
     let case = Case { atmosphere: Atmosphere::Layers(Arc::new(layers)), ..glide() };
-    let flight = fly(case.clone());
-    let exact = fly(with_tolerance(case.clone(), 1e-13));
+    let flight = fly(&case);
+    let exact = fly(&with_tolerance(case.clone(), 1e-13));
     assert!(miss(&flight, &exact) < 0.01, "{} m", miss(&flight, &exact));
     let jump = 1.2 * (-60.0_f64 / 7.0).exp() / 1e-5;
     let crossing = flight.points(&flight.instants(&Sampling::PerStep(1), 1000).unwrap());
@@ -170,8 +170,8 @@ fn a_wind_that_turns_with_the_air_is_a_faster_planet() {
     let turning = Planet { rotation_rate: planet.rotation_rate + excess, ..planet };
     let still = Case { planet: turning, initial_state: fast.to_planet_fixed(), ..base };
     for formulation in [|case: Case| case, spherical] {
-        let windy = fly(with_tolerance(formulation(windy.clone()), 1e-12));
-        let still = fly(with_tolerance(formulation(still.clone()), 1e-12));
+        let windy = fly(&with_tolerance(formulation(windy.clone()), 1e-12));
+        let still = fly(&with_tolerance(formulation(still.clone()), 1e-12));
         for time in [50.0, 150.0, 250.0, 350.0] {
             let (a, b) = (windy.at(time), still.at(time));
             assert!(a.loads.load_factor > 1e-4);
@@ -238,7 +238,7 @@ proptest! {
     /// The equations of the thesis, with forces of any direction, against those in planet-fixed coordinates.
     #[test]
     fn twin_formulations_agree_under_every_model(case in random_models()) {
-        let cartesian = fly(with_tolerance(case.clone(), 1e-12));
+        let cartesian = fly(&with_tolerance(case.clone(), 1e-12));
         let spherical = reentry::simulate(
             &reentry::Scenario::new(spherical(with_tolerance(case, 1e-12))).unwrap(),
             &std::sync::atomic::AtomicBool::new(false),
@@ -253,7 +253,7 @@ proptest! {
     #[test]
     fn energy_is_balanced_under_every_model(case in random_models()) {
         let scenario = reentry::Scenario::new(case.clone()).unwrap();
-        let flight = fly(case);
+        let flight = fly(&case);
         let verification =
             reentry::verification::verify(&scenario, &flight, &std::sync::atomic::AtomicBool::new(false)).unwrap();
         // 1e-10 of the energies of 6e7 J/kg, a hundred steps.
@@ -293,12 +293,12 @@ fn everything() -> Case {
 
 #[test]
 fn flights_with_every_model_are_exact_at_every_tolerance() {
-    let exact = fly(with_tolerance(everything(), 1e-13));
+    let exact = fly(&with_tolerance(everything(), 1e-13));
     for (digits, bound) in [(8, 2.0), (10, 0.05), (12, 2e-3)] {
-        let flight = fly(with_tolerance(everything(), 10_f64.powi(-digits)));
+        let flight = fly(&with_tolerance(everything(), 10_f64.powi(-digits)));
         assert!(miss(&flight, &exact) < bound, "1e-{digits}: {} m", miss(&flight, &exact));
     }
-    let other = fly(spherical(with_tolerance(everything(), 1e-12)));
+    let other = fly(&spherical(with_tolerance(everything(), 1e-12)));
     assert!(miss(&other, &exact) < 2e-3, "{} m", miss(&other, &exact));
 }
 
@@ -306,9 +306,9 @@ fn flights_with_every_model_are_exact_at_every_tolerance() {
 #[test]
 fn models_that_say_the_same_fly_the_same() {
     let plain = Case { vehicle: vehicle(5000.0, 12.0, 0.3, 1.2), ..glide() };
-    let end = fly(with_tolerance(plain.clone(), 1e-12));
+    let end = fly(&with_tolerance(plain.clone(), 1e-12));
     let same = |what: &str, case: Case| {
-        let flight = fly(with_tolerance(case, 1e-12));
+        let flight = fly(&with_tolerance(case, 1e-12));
         assert!(miss(&flight, &end) < 1e-4, "{what}: {} m", miss(&flight, &end));
     };
     let ratios = Aerodynamics::Ballistic { ballistic_coefficient: 5000.0 / (12.0 * 1.2), lift_to_drag: 0.25 };
@@ -336,8 +336,8 @@ fn models_that_say_the_same_fly_the_same() {
 #[test]
 fn a_vacuum_is_air_without_density() {
     let stop = Stop { time: 500.0, ..Stop::default() };
-    let vacuum = fly(Case { atmosphere: Atmosphere::Vacuum, stop, ..glide() });
-    let thin = fly(Case { density_factor: 0.0, stop, ..glide() });
+    let vacuum = fly(&Case { atmosphere: Atmosphere::Vacuum, stop, ..glide() });
+    let thin = fly(&Case { density_factor: 0.0, stop, ..glide() });
     assert!(miss(&vacuum, &thin) < 1e-3, "{} m", miss(&vacuum, &thin));
     let [start, end] = [vacuum.initial(), vacuum.last()].map(|point| point.specific_energy);
     near("energy", start, end, 1e-10 * start.abs());
@@ -348,7 +348,7 @@ fn a_vacuum_is_air_without_density() {
 #[test]
 fn leaving_a_table_is_a_warning_that_says_where() {
     let case = everything();
-    let flight = fly(case.clone());
+    let flight = fly(&case);
     let seen: Vec<_> = flight
         .warnings()
         .iter()
@@ -376,10 +376,10 @@ fn leaving_a_table_is_a_warning_that_says_where() {
     assert_eq!(seen.len(), 3, "{seen:?}");
     // At its last entry it is not left.
     let last = Control { angle_of_attack: Command::Constant(0.7), ..Control::banked(0.0) };
-    let known = fly(Case { control: last, ..case.clone() });
+    let known = fly(&Case { control: last, ..case.clone() });
     assert!(known.warnings().iter().all(|warning| !format!("{warning:?}").contains("AngleOfAttack")));
     let steep = Control { angle_of_attack: Command::Constant(0.8), ..Control::banked(0.0) };
-    let warned = fly(Case { control: steep, ..case });
+    let warned = fly(&Case { control: steep, ..case });
     assert!(warned.warnings().iter().any(|warning| matches!(
         warning,
         Warning::OutsideTable { table: Lookup::AngleOfAttack, edge: 0.7, above: true, time: 0.0, .. }
@@ -389,13 +389,13 @@ fn leaving_a_table_is_a_warning_that_says_where() {
 /// The peak of the Mach number is where its rate vanishes, or at an end.
 #[test]
 fn the_peak_of_mach_is_no_less_than_any_row() {
-    let flight = fly(everything());
+    let flight = fly(&everything());
     let peak = flight.peaks().mach.unwrap();
     let rows = flight.points(&flight.instants(&Sampling::PerStep(16), 10_000).unwrap());
     let greatest = rows.iter().map(|row| row.loads.mach.unwrap()).fold(0.0, f64::max);
     assert!(peak.value >= greatest && peak.value < greatest * (1.0 + 1e-4), "{peak:?} {greatest}");
     near("there", flight.at(peak.time).loads.mach.unwrap(), peak.value, 1e-9 * peak.value);
-    assert_eq!(fly(glide()).peaks().mach, None);
+    assert_eq!(fly(&glide()).peaks().mach, None);
 }
 
 /// Brakes out above 80 m/s and in below: with them out a body falls more slowly, with them in faster.
@@ -425,21 +425,21 @@ fn a_schedule_that_undoes_itself_is_refused_by_name() {
         initial_state: state.to_planet_fixed(),
         ..target_2()
     };
-    let error = try_to_fly(brake(Interpolation::Step, &[0.0, 80.0], &[0.0, 0.5])).unwrap_err();
+    let error = try_to_fly(&brake(Interpolation::Step, &[0.0, 80.0], &[0.0, 0.5])).unwrap_err();
     assert!(
         matches!(error, SimulationError::Chatter { switch: Switch::AngleOfAttack, time } if time > 1.0),
         "{error:?}: {error}"
     );
     assert!(error.to_string().contains("angle of attack"), "{error}");
     // A line between them settles on the speed at which drag and weight are equal.
-    let flight = fly(brake(Interpolation::Linear, &[79.0, 81.0], &[0.0, 0.5]));
+    let flight = fly(&brake(Interpolation::Linear, &[79.0, 81.0], &[0.0, 0.5]));
     assert!((79.0..81.0).contains(&flight.last().flight_path.speed), "{}", flight.last().flight_path.speed);
 }
 
 /// Downrange and crossrange by spherical trigonometry: Napier's rules of the right-angled triangle.
 #[test]
 fn downrange_and_crossrange_are_legs_of_a_right_angled_triangle() {
-    let flight = fly(everything());
+    let flight = fly(&everything());
     let start = flight.initial().flight_path;
     // To a rounding of the angle.
     near("at the start", flight.initial().downrange.unwrap(), 0.0, 1e-8);
@@ -458,7 +458,7 @@ fn downrange_and_crossrange_are_legs_of_a_right_angled_triangle() {
     let down = FlightPath { flight_path_angle: -std::f64::consts::FRAC_PI_2, ..start };
     let rest = FlightPath { speed: 0.0, ..start };
     for state in [down, rest] {
-        let flight = fly(Case { initial_state: state.to_planet_fixed(), ..glide() });
+        let flight = fly(&Case { initial_state: state.to_planet_fixed(), ..glide() });
         assert_eq!((flight.last().downrange, flight.last().crossrange), (None, None));
     }
 }
@@ -466,7 +466,7 @@ fn downrange_and_crossrange_are_legs_of_a_right_angled_triangle() {
 /// The inertial quantities of a row are those of its state in the inertial frame.
 #[test]
 fn inertial_quantities_are_those_of_the_inertial_state() {
-    let flight = fly(everything());
+    let flight = fly(&everything());
     for part in [0.0, 0.3, 0.9] {
         let point = flight.at(part * flight.end_time());
         let planet = everything().planet;

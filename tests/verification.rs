@@ -10,17 +10,17 @@ use reentry::{Case, Scenario, Solver, Stop};
 use crate::check::{near, relative};
 use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
 
-fn verified(case: Case) -> Verification {
+fn verified(case: &Case) -> Verification {
     verify(&Scenario::new(case.clone()).unwrap(), &fly(case), &AtomicBool::new(false)).unwrap()
 }
 
 #[test]
 fn the_distance_from_the_finer_flight_is_the_error() {
     for case in [target_2(), spherical(target_2())] {
-        let exact = fly(with_tolerance(case.clone(), 1e-14));
+        let exact = fly(&with_tolerance(case.clone(), 1e-14));
         for tolerance in [1e-5, 1e-7, 1e-9] {
             let case = with_tolerance(case.clone(), tolerance);
-            let (flight, verification) = (fly(case.clone()), verified(case));
+            let (flight, verification) = (fly(&case), verified(&case));
             relative("the tolerance of the finer flight", verification.relative_tolerance, tolerance / 100.0, 1e-15);
             // The finer flight has some hundredths of the error.
             relative("distance", verification.distance, miss(&flight, &exact), 0.2);
@@ -30,7 +30,7 @@ fn the_distance_from_the_finer_flight_is_the_error() {
     }
     relative(
         "there is no finer tolerance",
-        verified(with_tolerance(target_2(), 1e-13)).relative_tolerance,
+        verified(&with_tolerance(target_2(), 1e-13)).relative_tolerance,
         1e-14,
         1e-15,
     );
@@ -40,7 +40,7 @@ fn the_distance_from_the_finer_flight_is_the_error() {
 fn the_drift_of_the_energy_falls_with_the_tolerance() {
     let mut before = f64::INFINITY;
     for tolerance in [1e-5, 1e-7, 1e-9, 1e-11] {
-        let Verification { energy_drift, drag_work, .. } = verified(with_tolerance(target_2(), tolerance));
+        let Verification { energy_drift, drag_work, .. } = verified(&with_tolerance(target_2(), tolerance));
         // The work of 3 km/s and 120 km, but for the 130 m/s at the end: 4.5e6 + 1.2e6 J/kg.
         relative("work of the drag", drag_work, 5.6e6, 0.02);
         assert!(energy_drift < 0.1 * before, "{energy_drift:e} at {tolerance:e} after {before:e}");
@@ -69,7 +69,7 @@ proptest! {
 
 #[test]
 fn the_flag_ends_the_finer_flight_as_well() {
-    let interrupted = verify(&Scenario::new(target_2()).unwrap(), &fly(target_2()), &AtomicBool::new(true));
+    let interrupted = verify(&Scenario::new(target_2()).unwrap(), &fly(&target_2()), &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(SimulationError::Interrupted { .. })));
 }
 
@@ -85,8 +85,8 @@ fn the_finer_flight_may_take_more_steps() {
         heading: 0.5,
     };
     let case = Case { initial_state: orbit.to_planet_fixed(), stop: Stop { altitude: 0.0, time: 2e5 }, ..target_2() };
-    let steps = fly(case.clone()).statistics().steps;
+    let steps = fly(&case).statistics().steps;
     let case = Case { solver: Solver { step_limit: steps + 100, ..case.solver }, ..case };
-    assert!(fly(with_tolerance(case.clone(), 1e-10)).statistics().steps <= steps);
-    assert!(verified(case).distance > 0.0);
+    assert!(fly(&with_tolerance(case.clone(), 1e-10)).statistics().steps <= steps);
+    assert!(verified(&case).distance > 0.0);
 }

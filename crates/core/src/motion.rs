@@ -347,22 +347,14 @@ impl<P: Scalar> Forces<P> {
     /// σ, rad.
     #[inline(always)]
     fn bank_angle<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        self.command(&self.models.control.bank_angle, self.regime.of(Switch::BankAngle), time, flow)
+        flow.angle(&self.models.control.bank_angle, self.regime.of(Switch::BankAngle), time)
             + self.parameters.bank_angle
     }
 
     /// α, rad.
     #[inline(always)]
     fn angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        self.command(&self.models.control.angle_of_attack, self.regime.of(Switch::AngleOfAttack), time, flow)
-    }
-
-    #[inline(always)]
-    fn command<S: Over<P>>(&self, command: &Command, stretch: usize, time: S, flow: &Flow<S>) -> S {
-        match command {
-            Command::Constant(angle) => S::from(*angle),
-            Command::Schedule(schedule) => schedule.angle(stretch, flow.quantity(schedule.against(), time)),
-        }
+        flow.angle(&self.models.control.angle_of_attack, self.regime.of(Switch::AngleOfAttack), time)
     }
 }
 
@@ -393,6 +385,15 @@ impl<S: Scalar> Flow<S> {
     #[inline(always)]
     fn mach(&self) -> S {
         self.density_and_mach.map_or(S::zero(), |(_, mach)| mach)
+    }
+
+    /// An angle, rad, by the formula of a stretch of its schedule.
+    #[inline(always)]
+    fn angle(&self, command: &Command, stretch: usize, time: S) -> S {
+        match command {
+            Command::Constant(angle) => S::from(*angle),
+            Command::Schedule(schedule) => schedule.angle(stretch, self.quantity(schedule.against(), time)),
+        }
     }
 
     /// What a schedule may run along.
