@@ -55,7 +55,7 @@ proptest! {
     #[test]
     fn energy_is_balanced_on_every_flight(case in random_entry()) {
         for case in [case.clone(), in_vacuum(case.clone()), spherical(case)] {
-            let verification = match verify(&Scenario::new(case.clone()).unwrap(), &fly(case), &AtomicBool::new(false)) {
+            let verification = match verify(&Scenario::new(case.clone()).unwrap(), &fly(&case), &AtomicBool::new(false)) {
                 Err(SimulationError::Singularity { .. }) => continue,
                 verification => verification.unwrap(),
             };
