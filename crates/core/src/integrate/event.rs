@@ -29,6 +29,13 @@ pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: impl Fn(f64) 
     None
 }
 
+/// Whether the ends of a step tell of a fall: the quantity is at or below zero at the end, or falls and rises again, with tangents that
+/// meet below zero. What [`first_fall`] finds beyond that falls and rises more than once in a step.
+pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
+    let dips = || start.eps < 0.0 && end.eps > 0.0 && tangents_meet((0.0, start), (1.0, end), length) < 0.0;
+    end.re <= 0.0 || dips()
+}
+
 /// The part of the step at which the quantity is greatest, if it rises at the start and falls at the end.
 pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
     (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), &inside))

@@ -62,7 +62,9 @@ impl Watch {
             for boundary in boundaries_around(forces, switch).into_iter().flatten() {
                 let inside = |part| boundary.inside(read(forces, &passage.inside(part))[switch as usize]);
                 let [start, end] = [start, end].map(|quantity| boundary.inside(quantity));
-                if let Some(part) = event::first_fall(start, end, passage.step.length(), inside)
+                let length = passage.step.length();
+                if event::seems_to_fall(start, end, length)
+                    && let Some(part) = event::first_fall(start, end, length, inside)
                     && first.is_none_or(|first| part < first.part)
                 {
                     first = Some(Exit { part, switch, boundary });
