@@ -11,13 +11,14 @@ use std::sync::atomic::AtomicBool;
 
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
-use reentry::integrate::{Statistics, System};
+use reentry::atmosphere::us76;
+use reentry::integrate::{Integrator, Limits, Pace, Statistics, System};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::Sampling;
 use reentry::verification::verify;
-use reentry::{Case, FlightPath, Scenario, Solver, Stop, simulate};
+use reentry::{Case, FlightPath, PlanetFixed, Scenario, Solver, Stop, simulate};
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_tests::cases::thesis_cases;
@@ -33,6 +34,7 @@ fn main() {
     beside_ode_solvers();
     right_hand_sides();
     changes_of_formula();
+    layers();
     number_types();
 }
 
@@ -154,6 +156,65 @@ fn changes_of_formula() {
                 "| {name} | {tolerance:e} | {evaluations} | {steps} | {rejected_steps} | {miss:.1e} m | {time:.1} µs |"
             );
         }
+    }
+}
+
+/// The same fall through the standard atmosphere with its layers met, and stepped over as if there were none.
+fn layers() {
+    let request = json!({
+        "planet": {"shape": "sphere"},
+        "atmosphere": {"type": "us76"},
+        "vehicle": {"mass": 9500, "reference_area": 19.8, "aerodynamics": {"type": "constant", "drag_coefficient": 1.3}},
+        "initial_state": {"type": "planet_relative", "altitude": 120_000, "longitude": 0, "geocentric_latitude": 0.5,
+            "speed": 7500, "flight_path_angle": -0.026, "heading": 0.7},
+    });
+    let case = job(&request).scenario.case().clone();
+    let exact = Case { solver: Solver { relative_tolerance: 1e-14, ..case.solver }, ..case.clone() };
+    println!("\n| layers of us76 | tolerance | right-hand sides | steps | rejected | off by |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    for tolerance in [1e-8, 1e-10, 1e-12] {
+        let solver = Solver { relative_tolerance: tolerance, ..case.solver };
+        let met = arrival(&Scenario::new(Case { solver, ..case.clone() }).unwrap(), &NEVER).unwrap();
+        let over = Over(case.clone());
+        let limits = Limits { relative_tolerance: tolerance, steps: 100_000, interrupt: &NEVER };
+        let mut integrator = Integrator::new(&over, case.initial_state.into(), limits);
+        while integrator.time() < met.time {
+            integrator.advance(&over, met.time).unwrap();
+        }
+        let exact = arrival(&Scenario::new(exact.clone()).unwrap(), &NEVER).unwrap();
+        let delay = integrator.time() - exact.time;
+        let over = PlanetFixed::from(*integrator.state());
+        for (what, state, Statistics { steps, rejected_steps, evaluations }) in
+            [("met", met.state, met.statistics), ("stepped over", over, integrator.statistics())]
+        {
+            let miss = (state.position - exact.state.position - exact.state.velocity * delay).norm();
+            println!("| {what} | {tolerance:e} | {evaluations} | {steps} | {rejected_steps} | {miss:.1e} m |");
+        }
+    }
+}
+
+/// A fall over a sphere without lift, whose density is looked up anew in every evaluation.
+struct Over(Case);
+
+impl System<f64, 6> for Over {
+    fn derivative(&self, _: f64, coordinates: &[f64; 6]) -> [f64; 6] {
+        let PlanetFixed { position, velocity } = PlanetFixed::from(*coordinates);
+        let Case { planet, vehicle, .. } = &self.0;
+        let radius = position.norm();
+        let density = us76::density(radius - planet.equatorial_radius());
+        let drag = 0.5 * density * velocity.norm() * vehicle.reference_area * 1.3 / vehicle.mass;
+        let omega = nalgebra::Vector3::z() * planet.rotation_rate;
+        let acceleration = position * (-planet.gravitational_parameter / radius.powi(3))
+            - velocity * drag
+            - omega.cross(&velocity) * 2.0
+            - omega.cross(&omega.cross(&position));
+        PlanetFixed { position: velocity, velocity: acceleration }.into()
+    }
+}
+
+impl Pace<6> for Over {
+    fn magnitudes(&self) -> [f64; 6] {
+        Cartesian(self.0.forces()).magnitudes()
     }
 }
 

@@ -14,10 +14,11 @@ pub struct Verification {
     pub time_difference: f64,
     /// Between the final positions of both in the planet-fixed frame, m.
     pub distance: f64,
-    /// The greatest amount on the way by which V²/2 - ω²(x² + y²)/2 - GM/r and the work of the drag did not add up, J/kg.
+    /// The greatest amount on the way by which V²/2 - ω²(x² + y²)/2 + U, with the potential U of gravity (-GM/r and its harmonics),
+    /// and the work of the drag did not add up, J/kg.
     /// The work is summed on the dense output, which is less exact than the steps.
     pub energy_drift: f64,
-    /// The energy that the drag has taken, J/kg, to compare the drift with.
+    /// The energy that the drag has taken, and in wind the lift, J/kg, to compare the drift with.
     pub drag_work: f64,
 }
 
