@@ -222,6 +222,8 @@ struct Control<'a, const N: usize> {
     time: f64,
     /// Proposed for the next step, s.
     length: f64,
+    /// Proposed before the end cut the present step short, s; 0 where it does not.
+    stride: f64,
     /// By how much the next accepted step may lengthen it: not at all after a rejected one.
     growth: f64,
     statistics: Statistics,
@@ -231,7 +233,7 @@ impl<'a, const N: usize> Control<'a, N> {
     fn new<F: Pace<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
         let magnitudes = system.magnitudes();
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
-        let mut control = Self { limits, magnitudes, time: 0.0, length: 0.0, growth: GREATEST_GROWTH, statistics };
+        let mut control = Self { limits, magnitudes, time: 0.0, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
         control.length = control.first_step(system, state, derivative);
         control
     }
@@ -247,7 +249,9 @@ impl<'a, const N: usize> Control<'a, N> {
             return Err(IntegrationError::StepLimit { time, limit });
         }
         // A remainder below one per cent of a step is taken along.
-        let trial_end = if time + self.length * 1.01 >= end { end } else { time + self.length };
+        let last = time + self.length * 1.01 >= end;
+        let trial_end = if last { end } else { time + self.length };
+        self.stride = if last { self.length } else { 0.0 };
         self.length = trial_end - time;
         if self.length.is_nan() || self.length <= LEAST_LENGTH * end {
             return Err(IntegrationError::StepTooSmall { time });
@@ -270,7 +274,7 @@ impl<'a, const N: usize> Control<'a, N> {
         if accepted {
             self.statistics.evaluations += 1;
             self.statistics.steps += 1;
-            self.length *= self.growth.min(fitting).max(LEAST_GROWTH);
+            self.length = (self.length * self.growth.min(fitting).max(LEAST_GROWTH)).max(self.stride);
             self.growth = GREATEST_GROWTH;
         } else {
             self.statistics.rejected_steps += 1;

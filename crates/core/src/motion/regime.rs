@@ -169,10 +169,12 @@ impl Forces {
         tables.into_iter().filter(|(.., is_table)| *is_table).filter_map(|(switch, table, _)| {
             let (_, range) = self.boundaries(switch)?;
             let stretch = self.regime.of(switch);
-            // Below the first boundary or above the last; a table of one entry has nothing to leave.
+            let (first, last) = (*range.first()?, *range.last()?);
             match stretch {
-                0 => Some((table, *range.first()?, false)),
-                _ if stretch == range.len() => Some((table, *range.last()?, true)),
+                // One entry holds everywhere.
+                _ if first == last => None,
+                0 => Some((table, first, false)),
+                _ if stretch == range.len() => Some((table, last, true)),
                 _ => None,
             }
         })
