@@ -136,7 +136,8 @@ fn a_jump_of_the_density_is_met_exactly() {
     assert!(miss(&flight, &exact) < 0.01, "{} m", miss(&flight, &exact));
     let jump = 1.2 * (-60.0_f64 / 7.0).exp() / 1e-5;
     let crossing = flight.points(&flight.instants(&Sampling::PerStep(1), 1000).unwrap());
-    let after = crossing.iter().position(|point| (point.loads.altitude - 60e3).abs() < 1e-6).expect("a step ends there");
+    // A step ends within two micrometres of it.
+    let after = crossing.iter().position(|point| (point.loads.altitude - 60e3).abs() < 3e-6).expect("a step ends there");
     let density = |point: usize| crossing[point].loads.density;
     // The instant of the change belongs to what follows.
     near("below", density(after), 1.2 * (-60.0_f64 / 7.0).exp(), 1e-12);
@@ -370,7 +371,7 @@ fn leaving_a_table_is_a_warning_that_says_where() {
         let (_, edge, _, time, altitude) = find(Lookup::Mach, above);
         let there = flight.at(time);
         assert!(time > 1.0 && edge == mach);
-        near("Mach", there.loads.mach.unwrap(), mach, 1e-9);
+        near("Mach", there.loads.mach.unwrap(), mach, 3e-9);
         near("altitude", altitude, there.loads.altitude, 1e-6);
     }
     assert_eq!(seen.len(), 3, "{seen:?}");
@@ -478,4 +479,95 @@ fn inertial_quantities_are_those_of_the_inertial_state() {
         let energy = inertial.velocity.norm_squared() / 2.0 + planet.potential(&state.position);
         near("energy", point.specific_energy, energy, 1e-3);
     }
+}
+
+/// Where a flight starts on a boundary and level, rounding must not decide forever on which side it goes on.
+#[test]
+fn a_level_start_on_a_boundary_flies() {
+    let layers = Layers::new(vec![
+        Layer { base_altitude: 0.0, density: 1.2, scale_height: 7000.0 },
+        Layer { base_altitude: 120e3, density: 1e-7, scale_height: 9000.0 },
+    ]);
+    let layered = Atmosphere::Layers(Arc::new(layers.unwrap()));
+    let top = Arc::new(Table::new(&[0.0, 60e3, 120e3], &[1.2, 3e-4, 2e-8], Some(&[280.0; 3]), None).unwrap());
+    let switched = schedule(Against::Altitude, &[0.0, 120e3], &[0.2, 0.9], Interpolation::Step);
+    let never = std::sync::atomic::AtomicBool::new(false);
+    for planet in [Planet::EARTH_WGS84.spherical(), Planet::EARTH_WGS84] {
+        for (atmosphere, bank_angle) in [
+            (Atmosphere::Us76, Command::Constant(0.0)),
+            (layered.clone(), Command::Constant(0.0)),
+            (Atmosphere::Table(top.clone()), Command::Constant(0.0)),
+            (Atmosphere::EARTH_JAMESON, switched.clone()),
+        ] {
+            for turn in 0..40 {
+                let angle = f64::from(turn) * 0.157;
+                let (latitude, heading): (f64, f64) = (0.4 * angle.sin(), angle * 1.7 - 3.1);
+                let surface = planet.shape.surface_radius(latitude.sin(), latitude.cos());
+                let state = FlightPath {
+                    radius: surface + 120e3,
+                    longitude: angle - 3.0,
+                    geocentric_latitude: latitude,
+                    speed: [3000.0, 7500.0, 9000.0][turn as usize % 3],
+                    flight_path_angle: 0.0,
+                    heading,
+                };
+                let case = Case {
+                    planet,
+                    atmosphere: atmosphere.clone(),
+                    vehicle: vehicle(100.0, 1.0, 0.1, 1.0),
+                    initial_state: state.to_planet_fixed(),
+                    stop: Stop { time: 60.0, ..Stop::default() },
+                    ..banked_by(bank_angle.clone(), target_2())
+                };
+                let scenario = reentry::Scenario::new(case).unwrap();
+                let flight = reentry::simulate(&scenario, &never).unwrap();
+                assert!(flight.statistics().steps < 100, "{:?} at {state:?}", flight.statistics());
+            }
+        }
+    }
+}
+
+/// Whatever the air is like between the entries of its table, no row exceeds its peak.
+#[test]
+fn no_row_of_a_flight_through_a_table_exceeds_its_peak() {
+    let altitude = [0.0, 11e3, 20e3, 32e3, 47e3, 51e3, 71e3, 80e3, 86e3, 100e3, 120e3];
+    let density = [1.225, 0.3648, 0.0889, 0.0136, 1.43e-3, 8.6e-4, 6.4e-5, 1.8e-5, 6.9e-6, 5.6e-7, 2.2e-8];
+    let temperature = [288.15, 216.8, 216.65, 228.5, 270.65, 270.65, 214.6, 198.6, 186.87, 195.0, 360.0];
+    let table = Arc::new(Table::new(&altitude, &density, Some(&temperature), None).unwrap());
+    for (drag, angle) in [(0.0, -0.3), (0.0, -1.2), (0.0, -0.8), (1.0, -0.3), (1.0, -0.05)] {
+        let state = FlightPath {
+            radius: 6_378_137.0 + 115e3,
+            longitude: 0.0,
+            geocentric_latitude: 0.5,
+            speed: 3000.0,
+            flight_path_angle: angle,
+            heading: 0.5,
+        };
+        let flight = fly(&Case {
+            atmosphere: Atmosphere::Table(table.clone()),
+            vehicle: vehicle(500.0, 1.0, 0.0, drag),
+            initial_state: state.to_planet_fixed(),
+            ..target_2()
+        });
+        let rows = flight.points(&flight.instants(&Sampling::Count(4000), 4000).unwrap());
+        let peaks = flight.peaks();
+        let greatest = |quantity: fn(&reentry::trajectory::FlightPoint) -> f64| {
+            rows.iter().map(quantity).fold(f64::NEG_INFINITY, f64::max)
+        };
+        // To the resolution of a turning point.
+        let within = |what: &str, peak: f64, row: f64| assert!(row <= peak * (1.0 + 1e-9), "{what}: {row} over {peak}");
+        within("mach", peaks.mach.unwrap().value, greatest(|row| row.loads.mach.unwrap()));
+        within("dynamic pressure", peaks.dynamic_pressure.value, greatest(|row| row.loads.dynamic_pressure));
+        within("load factor", peaks.load_factor.value, greatest(|row| row.loads.load_factor));
+    }
+}
+
+/// The last row and the first after it agree on what holds at a corner.
+#[test]
+fn what_holds_from_a_corner_holds_at_the_end_on_it() {
+    let steps = schedule(Against::Time, &[0.0, 100.0], &[0.0, 1.0], Interpolation::Step);
+    let at = |time: f64| fly(&Case { stop: Stop { time, ..Stop::default() }, ..banked_by(steps.clone(), glide()) });
+    assert_eq!(at(100.0).last().bank_angle, 1.0);
+    assert_eq!(at(100.5).at(100.0).bank_angle, 1.0);
+    assert_eq!(at(99.5).last().bank_angle, 0.0);
 }

@@ -103,6 +103,22 @@ async fn columns_are_there_where_the_models_make_them_possible() {
 }
 
 #[tokio::test]
+async fn the_azimuth_of_what_stands_still_or_flies_vertically_is_0() {
+    for (speed, angle) in [(0, 0), (0, -45), (100, 90), (100, -90)] {
+        let case = with_all(
+            &capsule(),
+            [
+                ("/angle_unit", json!("deg")),
+                ("/initial_state/speed", json!(speed)),
+                ("/initial_state/flight_path_angle", json!(angle)),
+                ("/initial_state/heading", json!(30)),
+            ],
+        );
+        assert_eq!(fly(&case).await["initial_state"]["azimuth"], json!(0.0), "{speed} m/s at {angle}°");
+    }
+}
+
+#[tokio::test]
 async fn the_azimuth_is_the_compass_direction_of_the_heading() {
     for (heading, azimuth) in [(0, 90), (90, 0), (180, 270), (-180, 270), (-90, 180), (45, 45), (91, 359), (-1, 91)] {
         let case = with_all(

@@ -233,7 +233,8 @@ impl<'a, const N: usize> Control<'a, N> {
     fn new<F: Pace<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
         let magnitudes = system.magnitudes();
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
-        let mut control = Self { limits, magnitudes, time: 0.0, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
+        let mut control =
+            Self { limits, magnitudes, time: 0.0, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
         control.length = control.first_step(system, state, derivative);
         control
     }

@@ -120,7 +120,7 @@ fn record<F: Formulation>(
     let mut flight = Flight::start(scenario, motion, interrupt)?;
     let mut legs = Vec::with_capacity(TYPICAL_STEPS);
     let mut extremes = Extremes::new(&flight.motion, &flight.integrator, scenario.case().vehicle.has_lift())?;
-    let regime = flight.motion.forces().regime();
+    let first_regime = flight.motion.forces().regime();
     let arrival = fly(scenario, &mut flight, |passage| {
         extremes.observe(passage)?;
         legs.push(Leg { step: passage.step.clone(), regime: passage.motion.forces().regime() });
@@ -128,7 +128,8 @@ fn record<F: Formulation>(
     })?;
     let case = scenario.case().clone();
     let start = F::planet_fixed(&F::coordinates(&case.initial_state));
-    Ok(Trajectory::new(case, start, regime, legs, arrival, extremes.peaks, extremes.warnings))
+    let regimes = [first_regime, flight.motion.forces().regime()];
+    Ok(Trajectory::new(case, start, regimes, legs, arrival, extremes.peaks, extremes.warnings))
 }
 
 /// Flies to the end and shows every step on the way.

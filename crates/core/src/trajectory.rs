@@ -165,6 +165,8 @@ pub struct Trajectory {
     /// That in which the flight starts.
     pub(crate) regime: Regime,
     pub(crate) legs: Vec<Leg>,
+    /// That into which it would go on.
+    last_regime: Regime,
     arrival: Arrival,
     peaks: Peaks,
     warnings: Vec<Warning>,
@@ -175,14 +177,14 @@ impl Trajectory {
     pub(crate) fn new(
         case: Case,
         start: PlanetFixed<f64>,
-        regime: Regime,
+        [regime, last_regime]: [Regime; 2],
         legs: Vec<Leg>,
         arrival: Arrival,
         peaks: Peaks,
         warnings: Vec<Warning>,
     ) -> Self {
         let great_circle = GreatCircle::of(&case.initial_state);
-        Self { case, start, regime, legs, arrival, peaks, warnings, great_circle }
+        Self { case, start, regime, legs, last_regime, arrival, peaks, warnings, great_circle }
     }
 
     /// How the flight ended.
@@ -222,8 +224,7 @@ impl Trajectory {
 
     /// The final state.
     pub fn last(&self) -> FlightPoint {
-        let regime = self.legs.last().map_or(self.regime, |leg| leg.regime);
-        self.point(&self.forces(regime), self.arrival.time, &self.arrival.state)
+        self.point(&self.forces(self.last_regime), self.arrival.time, &self.arrival.state)
     }
 
     /// The state at a time, s; before the start it is the initial one, after the end the final one.

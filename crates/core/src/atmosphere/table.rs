@@ -108,7 +108,13 @@ impl Table {
 /// e to the power of an interpolated logarithm; from e^±700 on it stays, so that it is a finite positive number everywhere.
 #[inline(always)]
 fn exponential<S: Scalar>(logarithm: &Cubics<1>, stretch: usize, altitude: S, hint: &Hint) -> S {
-    let [logarithm] = logarithm.extrapolated(stretch, altitude, hint);
+    // Air that grows denser at the top of its table goes on as dense as there.
+    let [_, [slope_at_top]] = logarithm.end_slopes();
+    let [logarithm] = if stretch > 1 && slope_at_top > 0.0 {
+        logarithm.at(stretch, altitude, hint)
+    } else {
+        logarithm.extrapolated(stretch, altitude, hint)
+    };
     let logarithm = S::select(logarithm.less_than(-700.0), S::from(-700.0), logarithm);
     S::select(logarithm.less_than(700.0), logarithm, S::from(700.0)).exp()
 }

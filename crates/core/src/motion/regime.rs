@@ -83,7 +83,7 @@ impl Regime {
 impl Quantity {
     /// So near a boundary a flight counts as on it, and belongs to the side to which it moves: far more than a rounding, far less than
     /// anybody sees; s, m, m/s, a Mach number or rad.
-    fn resolution(self) -> f64 {
+    pub(crate) fn resolution(self) -> f64 {
         match self {
             Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack => 1e-9,
             Self::Along(Against::Altitude | Against::Speed) => 1e-6,
@@ -158,6 +158,13 @@ impl<P: Scalar> Forces<P> {
 }
 
 impl Forces {
+    /// Whether something is looked up between entries that steps do not meet.
+    pub(crate) fn has_tables(&self) -> bool {
+        matches!(self.models.atmosphere, Atmosphere::Table(_))
+            || matches!(self.models.wind, Wind::Table(_))
+            || self.models.aerodynamics.is_by_mach()
+    }
+
     /// The tables outside which the present regime lies: the edge beyond which it does, and whether that is above it.
     pub(crate) fn outside_tables(&self) -> impl Iterator<Item = (Lookup, f64, bool)> {
         let tables = [

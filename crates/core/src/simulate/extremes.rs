@@ -58,13 +58,20 @@ impl Extremes {
         let start = std::mem::replace(&mut self.loads, loads);
         let inside = |part| loads_at(forces, &passage.inside(part));
         let time = |part| passage.step.time(part);
+        let ends = [(0.0, start), (1.0, loads)];
+        // Between the entries of tables a quantity may turn more than once in a step.
+        let quarters = (forces.has_tables() && self.may_rise(&start, &loads, passage.step.length())).then(|| {
+            let [one, two, three] = [0.25, 0.5, 0.75].map(|part| (part, inside(part)));
+            [ends[0], one, two, three, ends[1]]
+        });
+        let looks = quarters.as_ref().map_or(&ends[..], |quarters| &quarters[..]);
         let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach } = &mut self.peaks;
-        raise(deceleration, &start, &loads, inside, time, |loads| loads.deceleration);
-        raise(load_factor, &start, &loads, inside, time, |loads| loads.load_factor);
-        raise(dynamic_pressure, &start, &loads, inside, time, |loads| loads.dynamic_pressure);
-        raise(altitude, &start, &loads, inside, time, |loads| loads.altitude);
+        raise(deceleration, looks, inside, time, |loads| loads.deceleration);
+        raise(load_factor, looks, inside, time, |loads| loads.load_factor);
+        raise(dynamic_pressure, looks, inside, time, |loads| loads.dynamic_pressure);
+        raise(altitude, looks, inside, time, |loads| loads.altitude);
         if let Some(mach) = mach {
-            raise(mach, &start, &loads, inside, time, |loads| loads.mach.unwrap_or(Dual64::from(0.0)));
+            raise(mach, looks, inside, time, |loads| loads.mach.unwrap_or(Dual64::from(0.0)));
         }
         if let Some(before) = self.cone
             && !self.faded
@@ -80,6 +87,20 @@ impl Extremes {
         Ok(())
     }
 
+    /// Whether a peak may lie inside a step, as far as the rates at its ends tell.
+    fn may_rise(&self, start: &Loads<Dual64>, end: &Loads<Dual64>, length: f64) -> bool {
+        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach } = &self.peaks;
+        let above = |peak: &Peak, quantity: fn(&Loads<Dual64>) -> Dual64| {
+            let (start, end) = (quantity(start), quantity(end));
+            start.re.max(end.re) + length * start.eps.abs().max(end.eps.abs()) > peak.value
+        };
+        above(deceleration, |loads| loads.deceleration)
+            || above(load_factor, |loads| loads.load_factor)
+            || above(dynamic_pressure, |loads| loads.dynamic_pressure)
+            || above(altitude, |loads| loads.altitude)
+            || mach.as_ref().is_some_and(|mach| above(mach, |loads| loads.mach.unwrap_or(Dual64::from(0.0))))
+    }
+
     /// Warns of every table outside which the present regime lies, once an edge.
     fn warn_outside_tables(&mut self, forces: &Forces, time: f64) {
         for (table, edge, above) in forces.outside_tables() {
@@ -92,25 +113,30 @@ impl Extremes {
     }
 }
 
-/// Raises a peak to the greatest value that a quantity has in a step.
+/// Raises a peak to the greatest value that a quantity has in a step, between the looks at it.
 fn raise(
     peak: &mut Peak,
-    start: &Loads<Dual64>,
-    end: &Loads<Dual64>,
+    looks: &[(f64, Loads<Dual64>)],
     inside: impl Fn(f64) -> Loads<Dual64>,
     time: impl Fn(f64) -> f64,
     quantity: impl Fn(&Loads<Dual64>) -> Dual64,
 ) {
-    let (before, after) = (quantity(start), quantity(end));
-    let top = event::maximum(before, after, |part| quantity(&inside(part)))
-        .map(|part| (part, inside(part)))
-        .filter(|(_, top)| quantity(top).re > after.re);
-    // The start counts where the quantity has jumped.
-    for (part, at) in [(0.0, *start), top.unwrap_or((1.0, *end))] {
-        let value = quantity(&at).re;
+    let mut rise = |part: f64, at: &Loads<Dual64>| {
+        let value = quantity(at).re;
         if value > peak.value {
             *peak = Peak { value, time: time(part), altitude: at.altitude.re };
         }
+    };
+    // The start counts where the quantity has jumped.
+    looks.iter().take(1).for_each(|(part, start)| rise(*part, start));
+    for pair in looks.windows(2) {
+        let [(from, start), (to, end)] = [&pair[0], &pair[1]];
+        let between = |part: f64| from + part * (to - from);
+        if let Some(part) = event::maximum(quantity(start), quantity(end), |part| quantity(&inside(between(part)))) {
+            let part = between(part);
+            rise(part, &inside(part));
+        }
+        rise(*to, end);
     }
 }
 

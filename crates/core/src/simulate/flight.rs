@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::SimulationError;
 use super::descent::{Descent, land};
 use super::passage::{Moment, Passage};
-use super::watch::{Watch, next_corner};
+use super::watch::{Exit, Watch, next_corner};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::motion::{Chatter, Formulation};
 use crate::scenario::Scenario;
@@ -92,19 +92,26 @@ impl<'a, F: Formulation> Flight<'a, F> {
         regular(motion, self.time, &self.state)?;
         observe(&passage)?;
         self.looks += passage.evaluations();
-        if turns && termination.is_none() {
-            self.turn(&step)?;
+        match termination {
+            // The last instant belongs to what would follow; where nothing could, it belongs to what was.
+            Some(_) => settle(&mut self.motion, self.time, &self.state).unwrap_or(()),
+            None if turns => self.turn(&step, exit)?,
+            None => {}
         }
         Ok(termination.map(|termination| self.arrival(termination)))
     }
 
     /// Goes on from the end of a step in the regime that begins there.
-    fn turn(&mut self, step: &Step<6>) -> Result<(), SimulationError> {
+    fn turn(&mut self, step: &Step<6>, exit: Option<Exit>) -> Result<(), SimulationError> {
         settle(&mut self.motion, step.end_time, &step.end)?;
         self.integrator.restart(&self.motion, step);
         let start = Moment::of::<F>(step.end_time, &step.end, self.integrator.derivative());
-        self.watch = Watch::new(self.motion.forces(), &start);
-        Ok(())
+        let watch = Watch::new(self.motion.forces(), &start);
+        let before = std::mem::replace(&mut self.watch, watch);
+        match exit.filter(|exit| exit.is_undone(&before, &watch, self.motion.forces())) {
+            Some(Exit { switch, .. }) => Err(SimulationError::Chatter { time: step.end_time, switch }),
+            None => Ok(()),
+        }
     }
 
     /// What an integration error means for the flight: near a singularity, that is the reason.

@@ -18,7 +18,8 @@ pub(super) struct Watch {
 pub(super) struct Exit {
     /// The part of the step.
     pub(super) part: f64,
-    switch: Switch,
+    /// What turns there.
+    pub(super) switch: Switch,
     boundary: Boundary,
 }
 
@@ -28,12 +29,14 @@ struct Boundary {
     value: f64,
     /// 1 where the flight comes from above, -1 from below.
     side: f64,
+    /// So far beyond the value the stretch ends: where a flight moves along a boundary, rounding must not carry it to and fro.
+    margin: f64,
 }
 
 impl Boundary {
     /// How far a quantity is inside.
     fn inside(self, quantity: Dual64) -> Dual64 {
-        (quantity - self.value) * self.side
+        (quantity - self.value) * self.side + self.margin
     }
 }
 
@@ -41,6 +44,14 @@ impl Exit {
     /// Falls to zero where the flight leaves.
     pub(super) fn inside(&self, forces: &Forces, moment: &Moment) -> Dual64 {
         self.boundary.inside(read(forces, moment)[self.switch as usize])
+    }
+
+    /// Whether the flight is led back into the stretch that it leaves, by forces that change its speed at once.
+    pub(super) fn is_undone(&self, before: &Watch, after: &Watch, forces: &Forces) -> bool {
+        let by_speed =
+            matches!(forces.boundaries(self.switch), Some((Quantity::Along(Against::Speed | Against::Mach), _)));
+        let rate = |watch: &Watch| self.boundary.inside(watch.readings[self.switch as usize]).eps;
+        by_speed && rate(before) < 0.0 && rate(after) > 0.0
     }
 }
 
@@ -96,8 +107,9 @@ fn boundaries_around(forces: &Forces, switch: Switch) -> [Option<Boundary>; 2] {
     let stretch = forces.regime().of(switch);
     match forces.boundaries(switch) {
         None | Some((Quantity::Along(Against::Time), _)) => [None, None],
-        Some((_, boundaries)) => {
-            let at = |index: usize, side| boundaries.get(index).map(|value| Boundary { value: *value, side });
+        Some((quantity, boundaries)) => {
+            let margin = 2.0 * quantity.resolution();
+            let at = |index: usize, side| boundaries.get(index).map(|value| Boundary { value: *value, side, margin });
             [stretch.checked_sub(1).and_then(|below| at(below, 1.0)), at(stretch, -1.0)]
         }
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::io::Write;
 
-use reentry::coordinates::UndefinedElements;
+use reentry::coordinates::{FlightPath, UndefinedElements};
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{self, FlightPoint, Lookup, Peaks as CorePeaks, Termination as CoreTermination, Trajectory};
 use serde::{Serialize, Serializer};
@@ -163,8 +163,12 @@ pub static COLUMNS: [Column; 28] = [
     },
 ];
 
-/// The compass direction of the heading, in [0, 2π).
+/// The compass direction of the heading, in [0, 2π); 0 where there is none, at rest and in vertical flight.
 fn azimuth(point: &FlightPoint) -> f64 {
+    let FlightPath { speed, flight_path_angle, .. } = point.flight_path;
+    if speed <= 0.0 || flight_path_angle.abs() >= FRAC_PI_2 {
+        return 0.0;
+    }
     let azimuth = FRAC_PI_2 - point.flight_path.heading;
     // The heading is at most π, and just less than 0 may round to the full turn.
     let turn = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
