@@ -179,7 +179,7 @@ impl Forces {
             let (first, last) = (*range.first()?, *range.last()?);
             match stretch {
                 // One entry holds everywhere.
-                _ if first == last => None,
+                _ if first >= last => None,
                 0 => Some((table, first, false)),
                 _ if stretch == range.len() => Some((table, last, true)),
                 _ => None,
