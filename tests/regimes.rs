@@ -47,7 +47,8 @@ fn end(flight: &Trajectory) -> Case {
 /// A step of a schedule is the end of one flight and the start of another.
 #[test]
 fn a_step_in_time_is_two_flights() {
-    let steps = banked_by(schedule(Against::Time, &[0.0, 150.0, 400.0], &[0.9, -0.6, 0.2], Interpolation::Step), glide());
+    let steps =
+        banked_by(schedule(Against::Time, &[0.0, 150.0, 400.0], &[0.9, -0.6, 0.2], Interpolation::Step), glide());
     let whole = fly(&with_tolerance(steps, 1e-12));
     let leg = |case: Case, bank: f64, time: f64| {
         let stop = Stop { time, ..Stop::default() };
@@ -91,7 +92,12 @@ fn angles_follow_their_schedule() {
             let point = flight.at(f64::from(second));
             let speed = point.flight_path.speed;
             if at.iter().all(|at| (speed - at).abs() > 1e-3) {
-                near(&format!("{interpolation:?} at {speed} m/s"), point.bank_angle, angle(speed, interpolation), 1e-12);
+                near(
+                    &format!("{interpolation:?} at {speed} m/s"),
+                    point.bank_angle,
+                    angle(speed, interpolation),
+                    1e-12,
+                );
             }
             seen.push(at.iter().filter(|at| **at < speed).count());
         }
@@ -137,7 +143,8 @@ fn a_jump_of_the_density_is_met_exactly() {
     let jump = 1.2 * (-60.0_f64 / 7.0).exp() / 1e-5;
     let crossing = flight.points(&flight.instants(&Sampling::PerStep(1), 1000).unwrap());
     // A step ends within two micrometres of it.
-    let after = crossing.iter().position(|point| (point.loads.altitude - 60e3).abs() < 3e-6).expect("a step ends there");
+    let after =
+        crossing.iter().position(|point| (point.loads.altitude - 60e3).abs() < 3e-6).expect("a step ends there");
     let density = |point: usize| crossing[point].loads.density;
     // The instant of the change belongs to what follows.
     near("below", density(after), 1.2 * (-60.0_f64 / 7.0).exp(), 1e-12);
@@ -166,7 +173,8 @@ fn a_wind_that_turns_with_the_air_is_a_faster_planet() {
     let altitude = [-1e3, 30e3, 90e3, 150e3];
     let table = WindTable::new(&altitude, &altitude.map(|h| excess * (h + 6_378_137.0)), &[0.0; 4]).unwrap();
     let stop = Stop { time: 400.0, ..Stop::default() };
-    let base = Case { planet, vehicle: vehicle(2000.0, 5.0, 0.3, 1.0), control: Control::banked(0.0), stop, ..target_2() };
+    let base =
+        Case { planet, vehicle: vehicle(2000.0, 5.0, 0.3, 1.0), control: Control::banked(0.0), stop, ..target_2() };
     let windy = Case { wind: Wind::Table(Arc::new(table)), initial_state: slow.to_planet_fixed(), ..base.clone() };
     let turning = Planet { rotation_rate: planet.rotation_rate + excess, ..planet };
     let still = Case { planet: turning, initial_state: fast.to_planet_fixed(), ..base };
@@ -200,7 +208,8 @@ fn wind_carries_a_body_at_rest_along() {
     };
     let planet = Planet { rotation_rate: 0.0, ..Planet::EARTH_WGS84.spherical() };
     let (mass, area, drag) = (10.0, 0.5, 1.0);
-    let case = Case { planet, vehicle: vehicle(mass, area, 0.0, drag), initial_state: state.to_planet_fixed(), ..target_2() };
+    let case =
+        Case { planet, vehicle: vehicle(mass, area, 0.0, drag), initial_state: state.to_planet_fixed(), ..target_2() };
     let (east, north) = (30.0, -20.0);
     let windy = Case { wind: Wind::Constant { east, north }, ..case.clone() };
     let [still, windy] = [case, windy].map(|case| case.forces().acceleration(0.0, &case.initial_state));
@@ -208,8 +217,7 @@ fn wind_carries_a_body_at_rest_along() {
     let density = 1.547_93 * (-10_000.0_f64 / 6935.0).exp();
     let push = 0.5 * density * speed * area * drag / mass;
     let to_east = Vector3::new(-longitude.sin(), longitude.cos(), 0.0);
-    let to_north =
-        Vector3::new(-latitude.sin() * longitude.cos(), -latitude.sin() * longitude.sin(), latitude.cos());
+    let to_north = Vector3::new(-latitude.sin() * longitude.cos(), -latitude.sin() * longitude.sin(), latitude.cos());
     let expected = (to_east * east + to_north * north) * push;
     assert!(((windy - still) - expected).norm() < 1e-12 * expected.norm() + 1e-14, "{windy} {still} {expected}");
 }
@@ -274,9 +282,7 @@ fn by_alpha_and_mach() -> Aerodynamics {
     let (alpha, mach) = ([-0.35, 0.0, 0.35, 0.7], [0.5, 0.9, 1.1, 2.0, 5.0, 20.0]);
     let lift = |alpha: f64, mach: f64| alpha.sin() * alpha.cos() * (1.5 + 0.5 / mach);
     let drag = |alpha: f64, mach: f64| 0.6 + alpha.sin().powi(2) + 0.4 * (-(mach - 1.1_f64).powi(2)).exp();
-    let matrix = |of: &dyn Fn(f64, f64) -> f64| {
-        alpha.map(|alpha| mach.map(|mach| of(alpha, mach)).to_vec()).to_vec()
-    };
+    let matrix = |of: &dyn Fn(f64, f64) -> f64| alpha.map(|alpha| mach.map(|mach| of(alpha, mach)).to_vec()).to_vec();
     let table = AlphaMachTable::new(&alpha, &mach, &matrix(&lift), &matrix(&drag)).unwrap();
     Aerodynamics::AlphaMachTable(Arc::new(table))
 }
@@ -342,7 +348,7 @@ fn a_vacuum_is_air_without_density() {
     assert!(miss(&vacuum, &thin) < 1e-3, "{} m", miss(&vacuum, &thin));
     let [start, end] = [vacuum.initial(), vacuum.last()].map(|point| point.specific_energy);
     near("energy", start, end, 1e-10 * start.abs());
-    assert_eq!(vacuum.last().loads.load_factor, 0.0);
+    near("load factor", vacuum.last().loads.load_factor, 0.0, 0.0);
 }
 
 /// The first time at each edge, and where.
@@ -355,7 +361,7 @@ fn leaving_a_table_is_a_warning_that_says_where() {
         .iter()
         .map(|warning| match warning {
             Warning::OutsideTable { table, edge, above, time, altitude } => (*table, *edge, *above, *time, *altitude),
-            other => panic!("{other:?}"),
+            other @ Warning::LiftFadedNearVertical { .. } => panic!("{other:?}"),
         })
         .collect();
     let find = |table: Lookup, above: bool| {
@@ -370,7 +376,8 @@ fn leaving_a_table_is_a_warning_that_says_where() {
     for (above, mach) in [(true, 20.0), (false, 0.5)] {
         let (_, edge, _, time, altitude) = find(Lookup::Mach, above);
         let there = flight.at(time);
-        assert!(time > 1.0 && edge == mach);
+        assert!(time > 1.0);
+        near("edge", edge, mach, 0.0);
         near("Mach", there.loads.mach.unwrap(), mach, 3e-9);
         near("altitude", altitude, there.loads.altitude, 1e-6);
     }
@@ -448,7 +455,8 @@ fn downrange_and_crossrange_are_legs_of_a_right_angled_triangle() {
         let point = flight.at(part * flight.end_time());
         let here = point.flight_path;
         let difference = here.longitude - start.longitude;
-        let ((sin_0, cos_0), (sin_1, cos_1)) = (start.geocentric_latitude.sin_cos(), here.geocentric_latitude.sin_cos());
+        let ((sin_0, cos_0), (sin_1, cos_1)) =
+            (start.geocentric_latitude.sin_cos(), here.geocentric_latitude.sin_cos());
         let distance = (sin_0 * sin_1 + cos_0 * cos_1 * difference.cos()).acos();
         let course = (cos_0 * sin_1 - sin_0 * cos_1 * difference.cos()).atan2(difference.sin() * cos_1);
         let off = start.heading - course;
@@ -499,15 +507,15 @@ fn a_level_start_on_a_boundary_flies() {
             (Atmosphere::Table(top.clone()), Command::Constant(0.0)),
             (Atmosphere::EARTH_JAMESON, switched.clone()),
         ] {
-            for turn in 0..40 {
-                let angle = f64::from(turn) * 0.157;
+            for turn in 0..40_usize {
+                let angle = f64::from(u8::try_from(turn).unwrap()) * 0.157;
                 let (latitude, heading): (f64, f64) = (0.4 * angle.sin(), angle * 1.7 - 3.1);
                 let surface = planet.shape.surface_radius(latitude.sin(), latitude.cos());
                 let state = FlightPath {
                     radius: surface + 120e3,
                     longitude: angle - 3.0,
                     geocentric_latitude: latitude,
-                    speed: [3000.0, 7500.0, 9000.0][turn as usize % 3],
+                    speed: [3000.0, 7500.0, 9000.0][turn % 3],
                     flight_path_angle: 0.0,
                     heading,
                 };
@@ -567,7 +575,7 @@ fn no_row_of_a_flight_through_a_table_exceeds_its_peak() {
 fn what_holds_from_a_corner_holds_at_the_end_on_it() {
     let steps = schedule(Against::Time, &[0.0, 100.0], &[0.0, 1.0], Interpolation::Step);
     let at = |time: f64| fly(&Case { stop: Stop { time, ..Stop::default() }, ..banked_by(steps.clone(), glide()) });
-    assert_eq!(at(100.0).last().bank_angle, 1.0);
-    assert_eq!(at(100.5).at(100.0).bank_angle, 1.0);
-    assert_eq!(at(99.5).last().bank_angle, 0.0);
+    near("at the end", at(100.0).last().bank_angle, 1.0, 0.0);
+    near("on the way", at(100.5).at(100.0).bank_angle, 1.0, 0.0);
+    near("before", at(99.5).last().bank_angle, 0.0, 0.0);
 }

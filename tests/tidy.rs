@@ -144,6 +144,18 @@ fn is_ignored(lines: &str, path: &str) -> bool {
 }
 
 /// A newcomer is led by the files that these name.
+/// A file of tests that no program takes in would pass whatever it says.
+#[test]
+fn every_file_of_tests_is_in_a_program() {
+    let read = |file: &str| fs::read_to_string(root().join("tests").join(file)).unwrap();
+    let programs = ["main.rs", "lib.rs", "http.rs", "Cargo.toml"].map(read).concat();
+    for (path, _) in sources("tests", "rs") {
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        let taken = [format!("mod {stem};"), format!("path = \"{stem}.rs\"")];
+        assert!(taken.iter().any(|name| programs.contains(name)), "{} is in no program", path.display());
+    }
+}
+
 #[test]
 fn every_path_that_the_documents_name_exists() {
     let mut named = 0;
