@@ -70,8 +70,10 @@ fn beside_ode_solvers() {
         };
         let tolerances = [1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
         // The ground is out of the way, so that both fly to the same time; its crossing is looked for all the same.
-        let to_the_time =
-            |tolerance| Case { stop: Stop { altitude: -1e5, time: exact.time }, ..with_tolerance(tolerance) };
+        let to_the_time = |tolerance| Case {
+            stop: Stop { altitude: -1e5, time: exact.time, ..Stop::default() },
+            ..with_tolerance(tolerance)
+        };
         let ours = tolerances.map(|tolerance| Scenario::new(to_the_time(tolerance)).unwrap());
         let peer_at = |tolerance: f64| peer(&case, exact.time, tolerance);
         let theirs = tolerances.map(|tolerance| move || peer_at(tolerance));
@@ -120,7 +122,7 @@ fn right_hand_sides() {
                 [&mut timed(|| {
                     // Each waits for the one before, as the stages of a step do.
                     states.iter().fold(0.0, |before, (time, state)| {
-                        let state = std::array::from_fn(|i| state[i] + before);
+                        let state: [f64; 6] = std::array::from_fn(|i| state[i] + before);
                         motion.derivative(*time, &state)[5] * 1e-30
                     })
                 })],

@@ -1,5 +1,10 @@
 //! The question: what flies where, from which state, until when, and how exactly.
 
+mod phase;
+
+pub use phase::Phase;
+
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt;
 
@@ -8,8 +13,11 @@ use num_dual::Dual2_64;
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
 use crate::coordinates::PlanetFixed;
+use crate::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
 use crate::planet::{Gravity, Planet, Zonal};
+use crate::propulsion::Axis;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
 
@@ -57,6 +65,14 @@ impl Bound {
     pub const WIND: Self = Self::between(-1e4, 1e4);
     /// The time at which a flight ends, s.
     pub const STOP_TIME: Self = Self::above(0.0, 1e9);
+    /// Times since the start, s.
+    pub const TIME: Self = Self::between(0.0, 1e9);
+    /// Thrusts, N.
+    pub const FORCE: Self = Self::between(-1e12, 1e12);
+    /// Specific impulses, s; that of light is 3.1e7.
+    pub const SPECIFIC_IMPULSE: Self = Self::between(1e-3, 1e9);
+    /// Emissivities.
+    pub const EMISSIVITY: Self = Self::above(0.0, 1.0);
     /// The relative tolerance of the integration.
     pub const RELATIVE_TOLERANCE: Self = Self::between(1e-14, 1e-3);
 
@@ -111,18 +127,30 @@ impl fmt::Display for Plain {
     }
 }
 
-/// When a flight ends at the latest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// When a flight ends: with the first of these.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// The altitude, m, along the radius vector, whose downward crossing ends the flight.
     pub altitude: f64,
     /// The time, s.
     pub time: f64,
+    /// The altitude, m, along the radius vector, whose upward crossing ends the flight.
+    pub ceiling: Option<f64>,
+    /// Conditions, each of which ends the flight.
+    pub when: Vec<Condition>,
 }
 
 impl Default for Stop {
     fn default() -> Self {
-        Self { altitude: 0.0, time: 10_000.0 }
+        Self { altitude: 0.0, time: 10_000.0, ceiling: None, when: Vec::new() }
+    }
+}
+
+impl Stop {
+    /// The ceiling, as a condition.
+    pub fn ceiling(&self) -> Option<Condition> {
+        let direction = Direction::Rising;
+        self.ceiling.map(|value| Condition { quantity: Quantity::Altitude, value, direction })
     }
 }
 
@@ -168,6 +196,10 @@ pub struct Case {
     pub vehicle: Vehicle,
     /// How it is flown.
     pub control: Control,
+    /// How it is heated, if that is wanted.
+    pub heating: Option<Heating>,
+    /// What happens on the way.
+    pub events: Vec<Event>,
     /// The state at t = 0.
     pub initial_state: PlanetFixed<f64>,
     /// When it ends.
@@ -191,13 +223,13 @@ enum Departure {
 }
 
 /// Something in a case that cannot be flown.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A number out of its bounds.
     #[error("{field} must be {bound}, got {value}")]
     OutOfBounds {
         /// Its place in the [`Case`].
-        field: &'static str,
+        field: Cow<'static, str>,
         /// The number.
         value: f64,
         /// What it may be.
@@ -246,8 +278,25 @@ pub enum Fault {
     #[error("needs a Mach number, and with it an atmosphere that has a temperature: us76, or a table with one")]
     NoTemperature {
         /// What needs it: its place in the [`Case`].
-        field: &'static str,
+        field: Cow<'static, str>,
     },
+    /// Time never falls.
+    #[error("is not for time, which never falls; use rises_through")]
+    TimeFalls {
+        /// The place of the condition in the [`Case`].
+        field: String,
+    },
+    /// The ceiling lies on the stop altitude or below.
+    #[error("must be greater than the stop altitude of {altitude} m, got {ceiling}")]
+    LowCeiling {
+        /// m.
+        ceiling: f64,
+        /// The stop altitude, m.
+        altitude: f64,
+    },
+    /// Heating without a nose.
+    #[error("is required: the heat flux at the stagnation point depends on it")]
+    NoNoseRadius,
     /// The initial acceleration overflows.
     #[error("the initial acceleration is not a finite number")]
     InfiniteAcceleration,
@@ -276,6 +325,8 @@ impl Scenario {
         faults.extend(planet_faults(&case.planet, &case.stop));
         faults.extend(state_faults(state));
         faults.extend(case.mach_faults());
+        faults.extend(case.condition_faults());
+        faults.extend((case.heating.is_some() && case.vehicle.nose_radius.is_none()).then_some(Fault::NoNoseRadius));
         if faults.is_empty() {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
@@ -318,14 +369,46 @@ impl Scenario {
 impl Case {
     /// What acts on the vehicle at the start.
     pub fn forces(&self) -> Forces {
-        let mut forces = Forces::new(self.models(), self.parameters());
+        let mut forces = Phase::first(self).forces(self);
         // Where no regime holds at the start, the flight says so.
         let _ = forces.settle(0.0, &self.initial_state);
         forces
     }
 
-    /// The models, as far as they hold no number of [`parameters`](Self::parameters).
+    /// The models at the start, as far as they hold no number of [`parameters`](Self::parameters).
     pub fn models(&self) -> Models {
+        self.models_of(&self.vehicle)
+    }
+
+    /// The numbers that may vary, beside the state, at the start.
+    pub fn parameters(&self) -> Parameters<f64> {
+        self.parameters_of(&self.vehicle)
+    }
+
+    /// Whether anything may lift the vehicle, or push it across its way, so that near the vertical something fades out.
+    pub(crate) fn may_lift(&self) -> bool {
+        let effects = self.events.iter().map(|event| &event.then);
+        self.vehicle.has_lift()
+            || effects.clone().any(|effect| effect.aerodynamics.as_ref().is_some_and(Aerodynamics::has_lift))
+            || effects.clone().any(|effect| effect.reference_area.is_some()) && self.vehicle.aerodynamics.has_lift()
+            || effects
+                .filter_map(|effect| effect.engine)
+                .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along == Axis::Normal))
+    }
+
+    /// Whether anything is watched on the way, beside the stop altitude and the formulas of the models.
+    pub(crate) fn is_watched(&self) -> bool {
+        !self.events.is_empty() || !self.stop.when.is_empty() || self.stop.ceiling.is_some()
+    }
+
+    /// The conditions that end the flight or let something happen, with their places in the case.
+    fn conditions(&self) -> impl Iterator<Item = (String, &Condition)> {
+        let events = self.events.iter().enumerate().map(|(index, event)| (format!("events.{index}.when"), &event.when));
+        events.chain(self.stop.when.iter().enumerate().map(|(index, when)| (format!("stop.when.{index}"), when)))
+    }
+
+    /// The models, with a vehicle in place of that of the start.
+    pub(crate) fn models_of(&self, vehicle: &Vehicle) -> Models {
         const NONE: Aerodynamics = Aerodynamics::Constant { lift_coefficient: 0.0, drag_coefficient: 0.0 };
         const NO_ANGLE: Command = Command::Constant(0.0);
         let atmosphere = match &self.atmosphere {
@@ -334,7 +417,7 @@ impl Case {
             }
             other => other.clone(),
         };
-        let aerodynamics = match &self.vehicle.aerodynamics {
+        let aerodynamics = match &vehicle.aerodynamics {
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => NONE,
             other => other.clone(),
         };
@@ -346,12 +429,16 @@ impl Case {
             wind: self.wind.clone(),
             aerodynamics,
             control: Control { bank_angle, angle_of_attack },
+            heating: self
+                .heating
+                .zip(vehicle.nose_radius)
+                .map(|(heating, nose_radius)| Stagnation { heating, nose_radius }),
         }
     }
 
-    /// The numbers that may vary, beside the state.
-    pub fn parameters(&self) -> Parameters<f64> {
-        let Vehicle { mass, reference_area, aerodynamics } = &self.vehicle;
+    /// The numbers that may vary, beside the state, with a vehicle in place of that of the start.
+    pub(crate) fn parameters_of(&self, vehicle: &Vehicle) -> Parameters<f64> {
+        let Vehicle { mass, reference_area, aerodynamics, .. } = vehicle;
         let [mass, reference_area, lift_coefficient, drag_coefficient] = match *aerodynamics {
             Aerodynamics::Constant { lift_coefficient, drag_coefficient } => {
                 [*mass, *reference_area, lift_coefficient, drag_coefficient]
@@ -379,12 +466,31 @@ impl Case {
             return Vec::new();
         }
         let Control { bank_angle, angle_of_attack } = &self.control;
-        let needs = [
-            ("vehicle.aerodynamics.type", self.vehicle.aerodynamics.is_by_mach()),
-            ("control.bank_angle.against", bank_angle.is_by_mach()),
-            ("control.angle_of_attack.against", angle_of_attack.is_by_mach()),
+        let needs: [(Cow<'static, str>, bool); 3] = [
+            ("vehicle.aerodynamics.type".into(), self.vehicle.aerodynamics.is_by_mach()),
+            ("control.bank_angle.against".into(), bank_angle.is_by_mach()),
+            ("control.angle_of_attack.against".into(), angle_of_attack.is_by_mach()),
         ];
-        needs.into_iter().filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
+        let conditions = self
+            .conditions()
+            .map(|(place, condition)| (format!("{place}.quantity").into(), condition.quantity == Quantity::Mach));
+        let effects = self.events.iter().enumerate().map(|(index, event)| {
+            let by_mach = event.then.aerodynamics.as_ref().is_some_and(Aerodynamics::is_by_mach);
+            (format!("events.{index}.then.aerodynamics.type").into(), by_mach)
+        });
+        let needs = needs.into_iter().chain(conditions).chain(effects);
+        needs.filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
+    }
+
+    /// What is wrong with conditions, beyond their numbers.
+    fn condition_faults(&self) -> Vec<Fault> {
+        let falls =
+            |condition: &Condition| condition.quantity == Quantity::Time && condition.direction == Direction::Falling;
+        let falling = self.conditions().filter(|(_, condition)| falls(condition));
+        let falling = falling.map(|(place, _)| Fault::TimeFalls { field: format!("{place}.falls_through") });
+        let altitude = self.stop.altitude;
+        let low = self.stop.ceiling.filter(|ceiling| *ceiling <= altitude);
+        falling.chain(low.map(|ceiling| Fault::LowCeiling { ceiling, altitude })).collect()
     }
 
     /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
@@ -433,9 +539,9 @@ pub fn state_faults(state: &PlanetFixed<f64>) -> Vec<Fault> {
 }
 
 fn out_of_bounds(case: &Case) -> Vec<Fault> {
-    let Case { planet, atmosphere, density_factor, wind, vehicle, control, stop, solver, .. } = case;
+    let Case { planet, atmosphere, density_factor, wind, vehicle, control, stop, solver, heating, .. } = case;
     let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
-    let mut checks = vec![
+    let mut checks: Vec<(&'static str, f64, Bound)> = vec![
         ("planet.gravitational_parameter", planet.gravitational_parameter, Bound::GRAVITATIONAL_PARAMETER),
         ("planet.equatorial_radius", equatorial_radius, Bound::PLANET_RADIUS),
         ("planet.polar_radius", polar_radius, Bound::PLANET_RADIUS),
@@ -462,27 +568,73 @@ fn out_of_bounds(case: &Case) -> Vec<Fault> {
         checks.extend([("wind.east", east, Bound::WIND), ("wind.north", north, Bound::WIND)]);
     }
     checks.push(("vehicle.mass", vehicle.mass, Bound::POSITIVE));
-    match vehicle.aerodynamics {
-        Aerodynamics::Constant { lift_coefficient, drag_coefficient } => checks.extend([
-            ("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE),
-            ("vehicle.aerodynamics.lift_coefficient", lift_coefficient, Bound::FINITE),
-            ("vehicle.aerodynamics.drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
-        ]),
-        Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => checks.extend([
-            ("vehicle.aerodynamics.ballistic_coefficient", ballistic_coefficient, Bound::POSITIVE),
-            ("vehicle.aerodynamics.lift_to_drag", lift_to_drag, Bound::FINITE),
-        ]),
-        Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => {
-            checks.push(("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE));
-        }
+    if !matches!(vehicle.aerodynamics, Aerodynamics::Ballistic { .. }) {
+        checks.push(("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE));
     }
+    checks.extend(vehicle.nose_radius.map(|radius| ("vehicle.nose_radius", radius, Bound::POSITIVE)));
+    checks.extend(heating.map(|heating| ("heating.emissivity", heating.emissivity, Bound::EMISSIVITY)));
+    checks.extend(stop.ceiling.map(|ceiling| ("stop.ceiling", ceiling, Bound::DISTANCE)));
     let commands = [("control.bank_angle", &control.bank_angle), ("control.angle_of_attack", &control.angle_of_attack)];
     checks.extend(commands.into_iter().filter_map(|(field, command)| match command {
         Command::Constant(angle) => Some((field, *angle, Bound::TURN)),
         Command::Schedule(_) => None,
     }));
-    let fault = |(field, value, bound): (&'static str, f64, Bound)| {
-        (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound })
-    };
-    checks.into_iter().filter_map(fault).collect()
+    let fixed = checks.into_iter().map(|(field, value, bound)| (Cow::Borrowed(field), value, bound));
+    let fixed = fixed.chain(coefficients("vehicle", &vehicle.aerodynamics));
+    let conditions = case.conditions().map(|(place, Condition { quantity, value, .. })| {
+        (Cow::Owned(format!("{place}.value")), *value, quantity.bound())
+    });
+    let effects = case.events.iter().enumerate().flat_map(|(index, event)| numbers(index, &event.then));
+    let fault =
+        |(field, value, bound): Check| (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound });
+    fixed.chain(conditions).chain(effects).filter_map(fault).collect()
+}
+
+/// A number, with its place in the case and its bound.
+type Check = (Cow<'static, str>, f64, Bound);
+
+/// The coefficients that are numbers of their own.
+fn coefficients(place: &str, aerodynamics: &Aerodynamics) -> Vec<Check> {
+    let of = |name: &str, value: f64, bound: Bound| (Cow::Owned(format!("{place}.aerodynamics.{name}")), value, bound);
+    match *aerodynamics {
+        Aerodynamics::Constant { lift_coefficient, drag_coefficient } => vec![
+            of("lift_coefficient", lift_coefficient, Bound::FINITE),
+            of("drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
+        ],
+        Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => vec![
+            of("ballistic_coefficient", ballistic_coefficient, Bound::POSITIVE),
+            of("lift_to_drag", lift_to_drag, Bound::FINITE),
+        ],
+        Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => Vec::new(),
+    }
+}
+
+/// The numbers of what an event changes.
+fn numbers(index: usize, effect: &Effect) -> Vec<Check> {
+    let of = |name: &str, value: f64, bound: Bound| (Cow::Owned(format!("events.{index}.then.{name}")), value, bound);
+    let mut checks = Vec::new();
+    checks.extend(effect.mass.map(|mass| of("mass", mass, Bound::POSITIVE)));
+    checks.extend(effect.reference_area.map(|area| of("reference_area", area, Bound::NON_NEGATIVE)));
+    checks.extend(effect.impulse.map(|impulse| of("impulse.speed_change", impulse.speed_change, Bound::VELOCITY)));
+    if let Some(Engine::On(thrust)) = effect.engine {
+        checks.push(of("engine.force", thrust.force, Bound::FORCE));
+        checks.push(of("engine.specific_impulse", thrust.specific_impulse, Bound::SPECIFIC_IMPULSE));
+        checks.extend(thrust.propellant.map(|mass| of("engine.propellant", mass, Bound::POSITIVE)));
+    }
+    let aerodynamics = effect.aerodynamics.iter();
+    checks.extend(aerodynamics.flat_map(|aerodynamics| coefficients(&format!("events.{index}.then"), aerodynamics)));
+    checks
+}
+
+impl Quantity {
+    /// The values that it may pass.
+    pub fn bound(self) -> Bound {
+        match self {
+            Self::Time => Bound::TIME,
+            Self::Altitude => Bound::DISTANCE,
+            Self::Speed => Bound::SPEED,
+            Self::Mach | Self::DynamicPressure | Self::LoadFactor => Bound::NON_NEGATIVE,
+            Self::FlightPathAngle => Bound::QUARTER_TURN,
+        }
+    }
 }

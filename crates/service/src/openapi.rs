@@ -7,10 +7,10 @@ use utoipa::OpenApi;
 
 use crate::error::Problem;
 use crate::wire::batch::MOST_CASES;
+use crate::wire::columns::COLUMNS;
 use crate::wire::epoch::RFC3339_PATTERN;
 use crate::wire::reader::MOST_COLUMNS;
 use crate::wire::scenario::Output;
-use crate::wire::trajectory::COLUMNS;
 
 /// The frame of the document; the router adds the paths.
 #[derive(OpenApi)]
@@ -29,12 +29,13 @@ use crate::wire::trajectory::COLUMNS;
 pub struct Document;
 
 /// Fields of which exactly one is given, by the name of their object.
-const ALTERNATIVES: [(&str, &[&str]); 5] = [
+const ALTERNATIVES: [(&str, &[&str]); 6] = [
     ("PlanetRelative", &["radius", "altitude"]),
     ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),
     ("InertialFlightPath", &["radius", "altitude"]),
     ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
     ("LayeredAtmosphere", &["layers", "preset"]),
+    ("Condition", &["falls_through", "rises_through"]),
 ];
 
 /// Every failure that every endpoint may answer with.
@@ -183,6 +184,29 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             ("then", json!({"properties": {"reference_area": false}})),
             ("else", json!({"required": ["reference_area"]})),
         ],
+        "Effect" => vec![(
+            "dependentSchemas",
+            json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
+        )],
+        "Condition" => {
+            let of = |quantity: &str, bounds: Value| {
+                let both = json!({"properties": {"falls_through": bounds, "rises_through": bounds}});
+                json!({"if": is("quantity", quantity), "then": both})
+            };
+            let not_negative = json!({"minimum": 0});
+            let time = json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}});
+            let quantities = [
+                of("time", json!({"minimum": 0, "maximum": 1e9})),
+                time,
+                of("altitude", json!({"minimum": -1e12, "maximum": 1e12})),
+                of("speed", json!({"minimum": 0, "maximum": 1e6})),
+                of("mach", not_negative.clone()),
+                of("dynamic_pressure", not_negative.clone()),
+                of("load_factor", not_negative),
+                of("flight_path_angle", json!({"minimum": -90, "maximum": 90})),
+            ];
+            vec![("allOf", json!(quantities))]
+        }
         "Schedule" => {
             let at = |bound: Value| json!({"properties": {"at": {"items": bound}}});
             vec![
@@ -224,7 +248,7 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("times/items", not_negative),
             ("trajectory", json!({"enum": [false]})),
             ("columns", json!({"minItems": 1, "maxItems": COLUMNS.len(), "uniqueItems": true})),
-            ("columns/items", json!({"enum": COLUMNS.each_ref().map(|column| column.name)})),
+            ("columns/items", json!({"enum": COLUMNS.iter().map(|column| column.name).collect::<Vec<_>>()})),
         ],
         "TableAtmosphere" => vec![
             ("altitude/items", distance),

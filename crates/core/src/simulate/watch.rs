@@ -61,7 +61,7 @@ impl Watch {
     }
 
     /// Where a step first leaves its stretches, if it does; those of time it does not leave, since no step goes beyond.
-    pub(super) fn exit<F: Formulation>(&self, passage: &Passage<F>) -> Option<Exit> {
+    pub(super) fn exit<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<Exit> {
         let forces = passage.motion.forces();
         if !forces.has_switches() {
             return None;
@@ -86,7 +86,7 @@ impl Watch {
     }
 
     /// Goes to the end of a step.
-    pub(super) fn follow<F: Formulation>(&mut self, passage: &Passage<F>) {
+    pub(super) fn follow<F: Formulation<N>, const N: usize>(&mut self, passage: &Passage<F, N>) {
         if passage.motion.forces().has_switches() {
             self.readings = read(passage.motion.forces(), &passage.end());
         }

@@ -271,15 +271,20 @@ impl Object<'_> {
         sound.then(|| chosen.into_iter().map(|choice| choices[choice].1).collect())
     }
 
-    /// Objects, one or more.
-    pub fn objects<T>(&mut self, name: &'static str, mut read: impl FnMut(&mut Object) -> Option<T>) -> Option<Vec<T>> {
+    /// Objects, so many at least and at most.
+    pub fn objects<T>(
+        &mut self,
+        name: &'static str,
+        counts: [usize; 2],
+        mut read: impl FnMut(&mut Object) -> Option<T>,
+    ) -> Option<Vec<T>> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let Value::Array(elements) = value else {
             return self.check(name, Err(format!("must be an array of objects, got {kind}")), Ok);
         };
         let count = elements.len();
-        if let Some(detail) = wrong_count(count, [1, MOST_ENTRIES]) {
+        if let Some(detail) = wrong_count(count, counts) {
             return self.check(name, Err(detail), Ok);
         }
         let place = format!("{}/{name}", self.pointer);
@@ -416,6 +421,24 @@ impl Object<'_> {
             other => {
                 let detail = format!("must be a number or {what}, got {}", kind_of(other));
                 self.check(name, Err(detail), Ok)
+            }
+        }
+    }
+
+    /// A word or an object with its own reader; anything else is told what it is to be.
+    pub fn word_or_object<T>(
+        &mut self,
+        name: &'static str,
+        (word, meaning): (&str, T),
+        object: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        match self.required(name)? {
+            Value::String(given) if given == word => Some(meaning),
+            Value::Object(_) => self.object(name, object),
+            other => {
+                let got =
+                    other.as_str().map_or_else(|| kind_of(other).to_owned(), |given| format!("{:?}", shortened(given)));
+                self.check(name, Err(format!("must be {word:?} or an object, got {got}")), Ok)
             }
         }
     }

@@ -1,0 +1,144 @@
+//! Conditions that a flight watches on its way: of its events, and of its end.
+
+use num_dual::Dual64;
+
+use super::passage::{Moment, Passage};
+use crate::event::{Condition, Quantity};
+use crate::integrate::event;
+use crate::motion::{Forces, Formulation};
+use crate::scenario::Case;
+use crate::trajectory::Termination;
+
+/// The conditions that have not been met yet.
+pub(super) struct Alarms {
+    alarms: Vec<Alarm>,
+}
+
+/// A condition, and what it sets off.
+struct Alarm {
+    condition: Condition,
+    sets_off: SetsOff,
+    /// How far the quantity is before the value, with its rate, at the end of the last step.
+    before: Dual64,
+    state: State,
+}
+
+/// What a condition sets off.
+#[derive(Clone, Copy)]
+enum SetsOff {
+    /// The event of this place in the list.
+    Event(usize),
+    /// The end of the flight.
+    End(Termination),
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    /// It waits.
+    Armed,
+    /// It is met at the present instant.
+    Due,
+    /// It was met, and is not looked at any more.
+    Done,
+}
+
+impl Alarms {
+    /// Those of a case, all waiting, for a flight that starts at a moment.
+    pub(super) fn new(case: &Case, forces: &Forces, start: &Moment) -> Self {
+        let events = case.events.iter().enumerate().map(|(index, event)| (event.when, SetsOff::Event(index)));
+        let stops = case.stop.when.iter().enumerate();
+        let stops = stops.map(|(index, condition)| (*condition, SetsOff::End(Termination::Condition(index))));
+        let ceiling = case.stop.ceiling().map(|condition| (condition, SetsOff::End(Termination::AtmosphereExit)));
+        let all = events.chain(stops).chain(ceiling);
+        let armed = |(condition, sets_off)| {
+            let before = before(&condition, forces, start);
+            Alarm { condition, sets_off, before, state: State::Armed }
+        };
+        Self { alarms: all.map(armed).collect() }
+    }
+
+    /// When the next condition on the time is met, s.
+    pub(super) fn next_time(&self) -> f64 {
+        let timed = self.armed().filter(|(_, alarm)| alarm.condition.quantity == Quantity::Time);
+        timed.map(|(_, alarm)| alarm.condition.value).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The part of a step at which the first of the conditions is met, and which it is; those on the time are not met before a step's end.
+    pub(super) fn first<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<(f64, usize)> {
+        let mut first: Option<(f64, usize)> = None;
+        let length = passage.step.length();
+        for (index, alarm) in self.armed().filter(|(_, alarm)| alarm.condition.quantity != Quantity::Time) {
+            let end = alarm.condition.before(passage.quantity_at_end(alarm.condition.quantity));
+            let inside = |part| before(&alarm.condition, passage.motion.forces(), &passage.inside(part));
+            if let Some(part) = event::first_crossing(alarm.before, end, length, inside)
+                && first.is_none_or(|(least, _)| part < least)
+            {
+                first = Some((part, index));
+            }
+        }
+        first
+    }
+
+    /// How far a quantity is before the value of a condition.
+    pub(super) fn before(&self, index: usize, forces: &Forces, moment: &Moment) -> Dual64 {
+        before(&self.alarms[index].condition, forces, moment)
+    }
+
+    /// Goes to the end of a step.
+    pub(super) fn follow<F: Formulation<N>, const N: usize>(&mut self, passage: &Passage<F, N>) {
+        for alarm in self.alarms.iter_mut().filter(|alarm| alarm.state == State::Armed) {
+            alarm.before = alarm.condition.before(passage.quantity_at_end(alarm.condition.quantity));
+        }
+    }
+
+    /// The condition that was found to be met at the present instant is.
+    pub(super) fn meet(&mut self, index: usize) {
+        self.alarms[index].state = State::Due;
+    }
+
+    /// Finds all that are met at the present instant: on their value and moving on, or beyond it by a jump.
+    pub(super) fn look(&mut self, forces: &Forces, now: &Moment) {
+        for alarm in self.alarms.iter_mut().filter(|alarm| alarm.state == State::Armed) {
+            let last = std::mem::replace(&mut alarm.before, before(&alarm.condition, forces, now));
+            let passes = alarm.before.re.abs() <= alarm.condition.resolution() && alarm.before.eps < 0.0;
+            let jumped = last.re > 0.0 && alarm.before.re <= 0.0;
+            if passes || jumped {
+                alarm.state = State::Due;
+            }
+        }
+    }
+
+    /// The first of the events that are due, which it then is no more.
+    pub(super) fn next_event(&mut self) -> Option<usize> {
+        let event = |alarm: &mut Alarm| match (alarm.state, alarm.sets_off) {
+            (State::Due, SetsOff::Event(event)) => {
+                alarm.state = State::Done;
+                Some(event)
+            }
+            _ => None,
+        };
+        self.alarms.iter_mut().find_map(event)
+    }
+
+    /// How the flight ends, if a condition for that is due.
+    pub(super) fn end(&self) -> Option<Termination> {
+        self.alarms.iter().find_map(|alarm| match (alarm.state, alarm.sets_off) {
+            (State::Due, SetsOff::End(termination)) => Some(termination),
+            _ => None,
+        })
+    }
+
+    /// Whether nothing is watched.
+    pub(super) fn is_empty(&self) -> bool {
+        self.alarms.is_empty()
+    }
+
+    fn armed(&self) -> impl Iterator<Item = (usize, &Alarm)> {
+        self.alarms.iter().enumerate().filter(|(_, alarm)| alarm.state == State::Armed)
+    }
+}
+
+/// How far a quantity is before the value of a condition.
+fn before(condition: &Condition, forces: &Forces, moment: &Moment) -> Dual64 {
+    condition.before(forces.quantity(condition.quantity, moment.time, &moment.state))
+}
