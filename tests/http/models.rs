@@ -217,11 +217,11 @@ async fn faults_of_columns_are_named() {
     let known = COLUMNS[..14].join(", ");
     for (output, pointer, phrase) in [
         (json!({"columns": ["time", "hight"]}), "/output/columns/1", known.as_str()),
-        (json!({"columns": ["time", "hight"]}), "/output/columns/1", "specific_energy, utc, got \"hight\""),
+        (json!({"columns": ["time", "hight"]}), "/output/columns/1", "wall_temperature, mass, got \"hight\""),
         (json!({"columns": ["time", 3]}), "/output/columns/1", "got a number"),
         (json!({"columns": ["time", "speed", "time"]}), "/output/columns/2", "time is there twice"),
         (json!({"columns": []}), "/output/columns", "must have at least 1 entry, got 0"),
-        (json!({"columns": vec!["time"; 29]}), "/output/columns", "must have at most 28 entries, got 29"),
+        (json!({"columns": vec!["time"; 34]}), "/output/columns", "must have at most 33 entries, got 34"),
         (json!({"columns": "time"}), "/output/columns", "must be an array of names, got a string"),
         (json!({"columns": ["time"], "trajectory": false}), "/output/columns", "no trajectory"),
         (json!({"columns": ["time"], "count": 2, "interval": 1}), "/output", "must have exactly one of"),

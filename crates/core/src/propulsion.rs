@@ -11,7 +11,7 @@ pub enum Axis {
     /// r̂, away from the planet's centre.
     Radial,
     /// r̂ × v̂ over its length, level and to the left of the flight direction; none at rest and in vertical flight. Within
-    /// [`LIFT_FADE_ANGLE`](crate::motion::LIFT_FADE_ANGLE) of the vertical a thrust along it fades out as lift does.
+    /// 0.001 rad of the vertical a thrust along it fades out as lift does.
     Normal,
 }
 

@@ -22,7 +22,7 @@ pub struct Verification {
     pub energy_drift: f64,
     /// The energy that drag, and in wind lift, has taken, J/kg.
     pub drag_work: f64,
-    /// The energy that thrust has given, J/kg.
+    /// The energy that thrust has given, J/kg; impulses not included.
     pub thrust_work: f64,
 }
 

@@ -69,6 +69,7 @@ impl Extremes {
             // The loads may jump where a formula changes, and where something happens.
             self.stage = stage;
             self.jump(forces, &passage.start())?;
+            self.warn_outside_tables(forces, passage.step.start_time);
         }
         let end = passage.end();
         let loads = finite(*passage.loads_at_end(), end.time.re)?;
@@ -101,14 +102,13 @@ impl Extremes {
     fn jump(&mut self, forces: &Forces, now: &Moment) -> Result<(), SimulationError> {
         self.loads = finite(loads_at(forces, now), now.time.re)?;
         raise_all(&mut self.peaks, &[(0.0, self.loads)], |_| self.loads, |_| now.time.re);
-        self.warn_outside_tables(forces, now.time.re);
         Ok(())
     }
 
     /// Ends with the flight, whose last instant may have brought a jump.
     pub(super) fn end(&mut self, forces: &Forces, last: &Instant) -> Result<(), SimulationError> {
-        let Instant { time, state, heat_load, phase, regime } = last;
-        if (*phase, *regime) != self.stage {
+        let Instant { time, state, heat_load, phase, .. } = last;
+        if *phase != self.stage.0 {
             let state =
                 PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
             self.jump(forces, &Moment { time: Dual64::from(*time), state })?;

@@ -271,6 +271,16 @@ impl Object<'_> {
         sound.then(|| chosen.into_iter().map(|choice| choices[choice].1).collect())
     }
 
+    /// Objects, so many at most; without the field there are none.
+    pub fn optional_objects<T>(
+        &mut self,
+        name: &'static str,
+        most: usize,
+        read: impl FnMut(&mut Object) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        if self.has(name) { self.objects(name, [0, most], read) } else { Some(Vec::new()) }
+    }
+
     /// Objects, so many at least and at most.
     pub fn objects<T>(
         &mut self,

@@ -202,8 +202,7 @@ impl SimulateRequest {
         let vehicle = object.object("vehicle", Vehicle::read);
         let control = object.object_or("control", json!({}), Control::read);
         let heating = object.has("heating").then(|| object.object("heating", Heating::read));
-        object.fill("events", json!([]));
-        let events = object.objects("events", [0, MOST_EVENTS], Event::read);
+        let events = object.optional_objects("events", MOST_EVENTS, Event::read);
         let has_epoch = object.has("epoch");
         let initial_state = object.object("initial_state", |object| {
             if !has_epoch {
@@ -329,8 +328,7 @@ impl Stop {
         let altitude = object.number_or("altitude", Bound::DISTANCE, default.altitude);
         let time = object.number_or("time", Bound::STOP_TIME, default.time);
         let ceiling = object.optional_number("ceiling", Bound::DISTANCE);
-        object.fill("when", json!([]));
-        let when = object.objects("when", [0, MOST_EVENTS], Condition::read);
+        let when = object.optional_objects("when", MOST_EVENTS, Condition::read);
         Some(Self { altitude: altitude?, time: time?, ceiling, when: when? })
     }
 

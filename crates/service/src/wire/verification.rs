@@ -20,14 +20,24 @@ pub struct Verification {
     pub energy_drift: f64,
     /// The energy that the drag has taken, and in wind the lift, J/kg, to compare the drift with.
     pub drag_work: f64,
-    /// The energy that thrust has given, J/kg; impulses not included.
-    pub thrust_work: f64,
+    /// The energy that thrust has given, J/kg, impulses not included; where an event switches thrust.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub thrust_work: Option<f64>,
 }
 
-impl From<CoreVerification> for Verification {
-    fn from(core: CoreVerification) -> Self {
+impl Verification {
+    /// That of a flight, with or without thrust.
+    pub fn from_core(core: CoreVerification, has_thrust: bool) -> Self {
         let CoreVerification { relative_tolerance, time_difference, distance, energy_drift, drag_work, thrust_work } =
             core;
-        Self { relative_tolerance, time_difference, distance, energy_drift, drag_work, thrust_work }
+        Self {
+            relative_tolerance,
+            time_difference,
+            distance,
+            energy_drift,
+            drag_work,
+            thrust_work: has_thrust.then_some(thrust_work),
+        }
     }
 }
