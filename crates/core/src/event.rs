@@ -82,6 +82,19 @@ pub enum Engine {
     Off,
 }
 
+impl Quantity {
+    /// All of them.
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Time,
+        Self::Altitude,
+        Self::Speed,
+        Self::Mach,
+        Self::DynamicPressure,
+        Self::LoadFactor,
+        Self::FlightPathAngle,
+    ];
+}
+
 impl Condition {
     /// How far a quantity is on the near side of the value; negative beyond.
     pub fn before<S: Scalar>(&self, quantity: S) -> S {

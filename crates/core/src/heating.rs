@@ -67,9 +67,16 @@ pub struct Stagnation {
     pub heating: Heating,
     /// m.
     pub nose_radius: f64,
+    /// Its logarithm, which the radiation wants at every instant.
+    ln_nose_radius: f64,
 }
 
 impl Stagnation {
+    /// The heating of a nose of a radius, m.
+    pub fn new(heating: Heating, nose_radius: f64) -> Self {
+        Self { heating, nose_radius, ln_nose_radius: nose_radius.ln() }
+    }
+
     /// The fluxes in air of a density, kg/m³, at a speed relative to it, m/s, by the formula of a stretch of
     /// [`boundaries`](Self::boundaries).
     #[inline(always)]
@@ -81,7 +88,7 @@ impl Stagnation {
         };
         let radiative = match self.heating.radiative {
             Radiative::None => S::zero(),
-            Radiative::TauberSutton => tauber_sutton(stretch, density, air_speed, self.nose_radius),
+            Radiative::TauberSutton => radiation(stretch, density, air_speed, [self.nose_radius, self.ln_nose_radius]),
         };
         HeatFlux { convective, radiative }
     }
@@ -205,12 +212,15 @@ const FLUX_AT_CIRCULAR_SPEED: f64 = 1.103_483e8;
 /// ```
 #[inline(always)]
 pub fn tauber_sutton<S: Scalar>(stretch: usize, density: S, speed: S, nose_radius: f64) -> S {
-    if stretch == 0 { S::zero() } else { radiation(stretch, density, speed, nose_radius) }
+    radiation(stretch, density, speed, [nose_radius, nose_radius.ln()])
 }
 
-/// The flux where there is one; not inlined, for the sake of the flights that are too slow for it.
-#[inline(never)]
-fn radiation<S: Scalar>(stretch: usize, density: S, speed: S, nose_radius: f64) -> S {
+/// The flux, with the logarithm of the nose radius.
+#[inline(always)]
+fn radiation<S: Scalar>(stretch: usize, density: S, speed: S, [nose_radius, ln_nose_radius]: [f64; 2]) -> S {
+    if stretch == 0 {
+        return S::zero();
+    }
     let last = TAUBER_SUTTON_SPEED.len() - 1;
     let f = if stretch > last {
         S::from(TAUBER_SUTTON_F[last])
@@ -224,9 +234,12 @@ fn radiation<S: Scalar>(stretch: usize, density: S, speed: S, nose_radius: f64) 
         radius if radius <= 2.0 => 0.6,
         _ => 0.5,
     };
-    let exponent = power(speed, -1.88) * power(density, -0.325) * 1.072e6;
+    let thin = density.less_than(f64::MIN_POSITIVE);
+    let ln_density = S::select(thin, S::one(), density).ln();
+    let exponent = (speed.ln() * -1.88 - ln_density * 0.325).exp() * 1.072e6;
     let exponent = S::select(exponent.less_than(greatest), exponent, S::from(greatest));
-    power(density, 1.22) * (exponent * nose_radius.ln()).exp() * f * 4.736e8
+    let flux = (exponent * ln_nose_radius + ln_density * 1.22).exp() * f * 4.736e8;
+    S::select(thin, S::zero(), flux)
 }
 
 /// A power of a number that is not negative; of none, none.

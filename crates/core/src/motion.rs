@@ -145,8 +145,8 @@ pub trait Formulation<const N: usize>: Pace<N> {
     fn forces_mut(&mut self) -> &mut Forces;
 }
 
-/// The heat load, J/m², of a mild entry: that of a smaller one is as exact as if it were this.
-const HEAT_LOAD: f64 = 1e7;
+/// The heat load, J/m², of an entry from orbit: a smaller one is as exact as if it were this.
+const HEAT_LOAD: f64 = 1e8;
 
 /// Six numbers, and as the seventh, where there is one, the heat load.
 fn with_heat_load<S: Scalar, const N: usize>(coordinates: [S; 6], heat_load: S) -> [S; N] {

@@ -432,7 +432,7 @@ impl Case {
             heating: self
                 .heating
                 .zip(vehicle.nose_radius)
-                .map(|(heating, nose_radius)| Stagnation { heating, nose_radius }),
+                .map(|(heating, nose_radius)| Stagnation::new(heating, nose_radius)),
         }
     }
 

@@ -12,14 +12,16 @@ use crate::trajectory::Termination;
 /// The conditions that have not been met yet.
 pub(super) struct Alarms {
     alarms: Vec<Alarm>,
+    /// The quantities for which a condition waits.
+    watched: Vec<Quantity>,
+    /// Of these, with their rates, at the end of the last step; the others are zero.
+    last: [Dual64; Quantity::ALL.len()],
 }
 
 /// A condition, and what it sets off.
 struct Alarm {
     condition: Condition,
     sets_off: SetsOff,
-    /// How far the quantity is before the value, with its rate, at the end of the last step.
-    before: Dual64,
     state: State,
 }
 
@@ -50,11 +52,22 @@ impl Alarms {
         let stops = stops.map(|(index, condition)| (*condition, SetsOff::End(Termination::Condition(index))));
         let ceiling = case.stop.ceiling().map(|condition| (condition, SetsOff::End(Termination::AtmosphereExit)));
         let all = events.chain(stops).chain(ceiling);
-        let armed = |(condition, sets_off)| {
-            let before = before(&condition, forces, start);
-            Alarm { condition, sets_off, before, state: State::Armed }
-        };
-        Self { alarms: all.map(armed).collect() }
+        let armed = |(condition, sets_off)| Alarm { condition, sets_off, state: State::Armed };
+        let alarms: Vec<_> = all.map(armed).collect();
+        let waits = |quantity: &Quantity| alarms.iter().any(|alarm| alarm.condition.quantity == *quantity);
+        let watched = Quantity::ALL.into_iter().filter(waits).collect();
+        let mut alarms = Self { alarms, watched, last: [Dual64::from(0.0); Quantity::ALL.len()] };
+        alarms.last = alarms.read(|quantity| forces.quantity(quantity, start.time, &start.state));
+        alarms
+    }
+
+    /// Every quantity for which a condition waits.
+    fn read(&self, quantity: impl Fn(Quantity) -> Dual64) -> [Dual64; Quantity::ALL.len()] {
+        let mut quantities = self.last;
+        for watched in &self.watched {
+            quantities[*watched as usize] = quantity(*watched);
+        }
+        quantities
     }
 
     /// When the next condition on the time is met, s.
@@ -67,10 +80,15 @@ impl Alarms {
     pub(super) fn first<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         let length = passage.step.length();
-        for (index, alarm) in self.armed().filter(|(_, alarm)| alarm.condition.quantity != Quantity::Time) {
-            let end = alarm.condition.before(passage.quantity_at_end(alarm.condition.quantity));
-            let inside = |part| before(&alarm.condition, passage.motion.forces(), &passage.inside(part));
-            if let Some(part) = event::first_crossing(alarm.before, end, length, inside)
+        for (index, Alarm { condition, .. }) in self.armed() {
+            let quantity = condition.quantity;
+            if quantity == Quantity::Time {
+                continue;
+            }
+            let ends = [self.last[quantity as usize], passage.quantity_at_end(quantity)];
+            let [start, end] = ends.map(|quantity| condition.before(quantity));
+            let inside = |part| before(condition, passage.motion.forces(), &passage.inside(part));
+            if let Some(part) = event::first_crossing(start, end, length, inside)
                 && first.is_none_or(|(least, _)| part < least)
             {
                 first = Some((part, index));
@@ -86,8 +104,17 @@ impl Alarms {
 
     /// Goes to the end of a step.
     pub(super) fn follow<F: Formulation<N>, const N: usize>(&mut self, passage: &Passage<F, N>) {
+        if self.is_empty() {
+            return;
+        }
+        let next = self.read(|quantity| passage.quantity_at_end(quantity));
+        let last = std::mem::replace(&mut self.last, next);
         for alarm in self.alarms.iter_mut().filter(|alarm| alarm.state == State::Armed) {
-            alarm.before = alarm.condition.before(passage.quantity_at_end(alarm.condition.quantity));
+            let [last, next] = [last, next].map(|of| alarm.condition.before(of[alarm.condition.quantity as usize]).re);
+            // Where conditions are met together, one of them cuts the step.
+            if last > 0.0 && next <= 0.0 {
+                alarm.state = State::Due;
+            }
         }
     }
 
@@ -98,10 +125,13 @@ impl Alarms {
 
     /// Finds all that are met at the present instant: on their value and moving on, or beyond it by a jump.
     pub(super) fn look(&mut self, forces: &Forces, now: &Moment) {
+        let next = self.read(|quantity| forces.quantity(quantity, now.time, &now.state));
+        let last = std::mem::replace(&mut self.last, next);
         for alarm in self.alarms.iter_mut().filter(|alarm| alarm.state == State::Armed) {
-            let last = std::mem::replace(&mut alarm.before, before(&alarm.condition, forces, now));
-            let passes = alarm.before.re.abs() <= alarm.condition.resolution() && alarm.before.eps < 0.0;
-            let jumped = last.re > 0.0 && alarm.before.re <= 0.0;
+            let of = |quantities: [Dual64; _]| alarm.condition.before(quantities[alarm.condition.quantity as usize]);
+            let [last, next] = [of(last), of(next)];
+            let passes = next.re.abs() <= alarm.condition.resolution() && next.eps < 0.0;
+            let jumped = last.re > 0.0 && next.re <= 0.0;
             if passes || jumped {
                 alarm.state = State::Due;
             }

@@ -169,9 +169,9 @@ fn raise_all(
     }
     if let Some(HeatingPeaks { convective_heat_flux, radiative_heat_flux, heat_flux, .. }) = heating {
         raise(heat_flux, looks, inside, time, |loads| heat_flux_of(loads).total());
-        if looks.iter().all(|(_, loads)| heat_flux_of(loads).radiative.re == 0.0) {
-            *convective_heat_flux =
-                if heat_flux.value > convective_heat_flux.value { *heat_flux } else { *convective_heat_flux };
+        // Without radiation so far, the convection is all there is.
+        if radiative_heat_flux.value <= 0.0 && looks.iter().all(|(_, loads)| heat_flux_of(loads).radiative.re <= 0.0) {
+            *convective_heat_flux = *heat_flux;
         } else {
             raise(convective_heat_flux, looks, inside, time, |loads| heat_flux_of(loads).convective);
             raise(radiative_heat_flux, looks, inside, time, |loads| heat_flux_of(loads).radiative);

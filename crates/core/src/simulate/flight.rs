@@ -108,21 +108,26 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     ) -> Result<Option<Arrival>, SimulationError> {
         let Self { motion, integrator, descent, watch, alarms, log, .. } = self;
         let phase = log.phases.len();
-        let whole = Passage::new(motion, &step, phase);
-        let cut = cut(&whole, descent, watch, alarms);
-        let landed;
-        let passage = match &cut {
-            None => whole,
-            Some((part, cut)) => {
-                self.looks += whole.evaluations();
-                landed = land(integrator, motion, &step, step.time(*part), |moment| match cut {
-                    Cut::Ground => descent.height(moment),
-                    Cut::Exit(exit) => exit.inside(motion.forces(), moment),
-                    Cut::Alarm(index) => alarms.before(*index, motion.forces(), moment),
-                });
-                Passage::new(motion, &landed, phase)
-            }
-        };
+        let (landed, alarmed);
+        let mut passage = Passage::new(motion, &step, phase);
+        let mut cut = cut(&passage, descent, watch);
+        if let Some((part, cut)) = &cut {
+            self.looks += passage.evaluations();
+            landed = land(integrator, motion, &step, step.time(*part), |moment| match cut {
+                Cut::Exit(exit) => exit.inside(motion.forces(), moment),
+                Cut::Ground | Cut::Alarm(_) => descent.height(moment),
+            });
+            passage = Passage::new(motion, &landed, phase);
+        }
+        // What is met where the step ends does not cut it again.
+        if let Some((part, index)) = alarms.first(&passage).filter(|(part, _)| *part < AT_END) {
+            self.looks += passage.evaluations();
+            let step = passage.step;
+            alarmed =
+                land(integrator, motion, step, step.time(part), |moment| alarms.before(index, motion.forces(), moment));
+            passage = Passage::new(motion, &alarmed, phase);
+            cut = Some((part, Cut::Alarm(index)));
+        }
         descent.follow(&passage);
         watch.follow(&passage);
         alarms.follow(&passage);
@@ -257,20 +262,17 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 }
 
-/// The part of a step at which it is to be cut, and why.
+/// The part of a step at which it meets the stop altitude or leaves the stretch of a formula, whichever comes first.
 fn cut<F: Formulation<N>, const N: usize>(
     passage: &Passage<F, N>,
     descent: &Descent,
     watch: &Watch,
-    alarms: &Alarms,
 ) -> Option<(f64, Cut)> {
-    let impact = descent.impact(passage).map(|part| (part, Cut::Ground));
-    let exit = watch.exit(passage).map(|exit| (exit.part, Cut::Exit(exit)));
-    let alarm = alarms.first(passage).map(|(part, index)| (part, Cut::Alarm(index)));
-    [alarm, exit].into_iter().flatten().fold(impact, |first, other| match first {
-        Some(first) if first.0 <= other.0 => Some(first),
-        _ => Some(other),
-    })
+    let impact = descent.impact(passage);
+    match watch.exit(passage).filter(|exit| impact.is_none_or(|impact| exit.part < impact)) {
+        Some(exit) => Some((exit.part, Cut::Exit(exit))),
+        None => impact.map(|part| (part, Cut::Ground)),
+    }
 }
 
 /// Enters the regime of a state.
@@ -299,5 +301,7 @@ pub(super) fn regular<F: Formulation<N>, const N: usize>(
 const SINGULAR: f64 = 1e-8;
 /// An integration that fails this close to a singularity fails because of it.
 const NEARLY_SINGULAR: f64 = 1e-2;
+/// From this part of a step on, a place counts as its end.
+const AT_END: f64 = 1.0 - 1e-9;
 /// An integration that fails where no more than this part of the mass is left fails because of it.
 const NEARLY_NOTHING: f64 = 1e-2;

@@ -7,7 +7,7 @@ use num_dual::Dual64;
 use crate::coordinates::PlanetFixed;
 use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Formulation, Loads, moving};
+use crate::motion::{Formulation, Loads, Switch, moving};
 
 /// A time and the state then, both moving along the flow: what is computed from them comes with its rate of change.
 pub(super) struct Moment {
@@ -29,12 +29,22 @@ pub(super) struct Passage<'a, F, const N: usize> {
     /// The number of the phase to which it belongs.
     pub(super) phase: usize,
     interpolant: OnceCell<Interpolant<N>>,
-    end_loads: OnceCell<Loads<Dual64>>,
+    loads_at_end: OnceCell<Loads<Dual64>>,
+    quantities_at_end: [OnceCell<Dual64>; Quantity::ALL.len()],
+    readings_at_end: OnceCell<[Dual64; Switch::ALL.len()]>,
 }
 
 impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
     pub(super) fn new(motion: &'a F, step: &'a Step<N>, phase: usize) -> Self {
-        Self { step, motion, phase, interpolant: OnceCell::new(), end_loads: OnceCell::new() }
+        Self {
+            step,
+            motion,
+            phase,
+            interpolant: OnceCell::new(),
+            loads_at_end: OnceCell::new(),
+            quantities_at_end: Default::default(),
+            readings_at_end: OnceCell::new(),
+        }
     }
 
     /// The state at the start, moving along the flow.
@@ -56,7 +66,7 @@ impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
 
     /// The loads at the end.
     pub(super) fn loads_at_end(&self) -> &Loads<Dual64> {
-        self.end_loads.get_or_init(|| {
+        self.loads_at_end.get_or_init(|| {
             let Moment { time, state } = self.end();
             self.motion.forces().loads(time, &state)
         })
@@ -64,9 +74,19 @@ impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
 
     /// What an event may wait for, at the end.
     pub(super) fn quantity_at_end(&self, quantity: Quantity) -> Dual64 {
-        self.loads_at_end().quantity(quantity).unwrap_or_else(|| {
+        *self.quantities_at_end[quantity as usize].get_or_init(|| {
             let Moment { time, state } = self.end();
-            self.motion.forces().quantity(quantity, time, &state)
+            self.loads_at_end()
+                .quantity(quantity)
+                .unwrap_or_else(|| self.motion.forces().quantity(quantity, time, &state))
+        })
+    }
+
+    /// The quantities of the switches, at the end.
+    pub(super) fn readings_at_end(&self) -> &[Dual64; Switch::ALL.len()] {
+        self.readings_at_end.get_or_init(|| {
+            let Moment { time, state } = self.end();
+            self.motion.forces().readings(time, &state)
         })
     }
 

@@ -66,7 +66,7 @@ impl Watch {
         if !forces.has_switches() {
             return None;
         }
-        let ends = read(forces, &passage.end());
+        let ends = *passage.readings_at_end();
         let mut first: Option<Exit> = None;
         for switch in Switch::ALL {
             let [start, end] = [self.readings, ends].map(|readings| readings[switch as usize]);
@@ -88,7 +88,7 @@ impl Watch {
     /// Goes to the end of a step.
     pub(super) fn follow<F: Formulation<N>, const N: usize>(&mut self, passage: &Passage<F, N>) {
         if passage.motion.forces().has_switches() {
-            self.readings = read(passage.motion.forces(), &passage.end());
+            self.readings = *passage.readings_at_end();
         }
     }
 }
