@@ -31,9 +31,6 @@ const ROUNDS: usize = 1000;
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 fn main() {
-        heating_and_events();
-        return;
-    }
     flights();
     beside_ode_solvers();
     right_hand_sides();

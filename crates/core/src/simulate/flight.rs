@@ -106,6 +106,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         step: Step<N>,
         observe: &mut impl FnMut(&Passage<F, N>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
+        let horizon = self.horizon();
         let Self { motion, integrator, descent, watch, alarms, log, .. } = self;
         let phase = log.phases.len();
         let (landed, alarmed);
@@ -138,7 +139,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
         let mut ending = (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
         let mut exit = None;
-        let turns = cut.is_some() || ending.is_some() || self.time >= self.horizon();
+        let turns = cut.is_some() || self.time >= horizon;
         match cut {
             Some((_, Cut::Ground)) => ending = Some(Termination::SurfaceImpact),
             Some((_, Cut::Exit(left))) => exit = Some(left),
