@@ -6,6 +6,7 @@ mod analytic;
 mod atmosphere;
 mod check;
 mod conversions;
+mod events;
 mod flights;
 mod gravity;
 mod heating;
