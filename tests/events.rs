@@ -126,7 +126,7 @@ fn every_crossing_is_found_where_it_first_is() {
                     (None, None) => missed += 1,
                     // Between two rows a peak may pass a value and come back.
                     (None, Some(event)) => {
-                        near(&what, of(quantity, &event.before), when.value, 1e-9 * greatest.abs().max(1.0))
+                        near(&what, of(quantity, &event.before), when.value, 1e-9 * greatest.abs().max(1.0));
                     }
                     (Some(row), None) => panic!("{what} is met at {} s", rows[row].time),
                 }
@@ -308,19 +308,9 @@ fn a_flight_ends_at_its_ceiling_and_at_its_conditions() {
     assert_eq!((landed.termination(), events(&landed).len()), (Termination::SurfaceImpact, 1));
     assert_eq!(events(&landed)[0].before.time.to_bits(), landed.end_time().to_bits());
     // At the start.
-    let at_once = with(None, vec![falls(Quantity::Time, 0.0).with_direction(Direction::Rising)], vec![]);
+    let at_once = with(None, vec![rises(Quantity::Time, 0.0)], vec![]);
     assert_eq!((at_once.termination(), at_once.end_time().to_bits()), (Termination::Condition(0), 0));
     assert_eq!(at_once.instants(&Sampling::Count(5), 10).unwrap(), [0.0]);
-}
-
-trait WithDirection {
-    fn with_direction(self, direction: Direction) -> Self;
-}
-
-impl WithDirection for Condition {
-    fn with_direction(self, direction: Direction) -> Self {
-        Self { direction, ..self }
-    }
 }
 
 /// The end alone is that of the recorded flight, to the last digit, alone or beside others.

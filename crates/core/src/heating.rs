@@ -7,8 +7,8 @@
 //!
 //! Jameson 2006 proposes Vinh's relation in its last chapter (Vinh, Busemann and Culp, Hypersonic and Planetary Entry Flight Mechanics,
 //! 1980, pages 141 to 156): stagnation heating as √ρ V³, which is [`sutton_graves`] and [`chapman`] without their constants. In the variables of
-//! the thesis, with η = ρSC_D/(2mβ), the flux of a ballistic entry is in proportion to √η V³ and greatest where η = |sin γ|/6 and
-//! V = e^(-1/6) V_e; the tests hold the flights to that.
+//! the thesis, with `η = ρSC_D/(2mβ)`, the flux of a ballistic entry is in proportion to √η V³ and greatest where η = |sin γ|/6 and
+//! `V = e^(-1/6) V_e`; the tests hold the flights to that.
 
 use crate::scalar::Scalar;
 
@@ -124,9 +124,9 @@ pub const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 /// |--------|---------------|-------|
 /// | ρ      | `density`     | kg/m³ |
 /// | V      | `speed`       | m/s   |
-/// | r_n    | `nose_radius` | m     |
+/// | `r_n`  | `nose_radius` | m     |
 ///
-/// The report has K √(p_s/r_n) (h_s - h_w), with K = 0.1113 kg/(s m^1.5 atm^0.5) for air; with p_s = ρV², `h_s` = V²/2 and a cold wall
+/// The report has `K √(p_s/r_n) (h_s - h_w)`, with K = 0.1113 kg/(s m^1.5 atm^0.5) for air; with `p_s` = ρV², `h_s` = V²/2 and a cold wall
 /// that makes 1.748e-4, of which 1.7415e-4 is the customary rounding. Its average error against the solutions behind it is 3.3 %.
 /// Valid for stagnation enthalpies from 2.3 to 116.2 MJ/kg and pressures from 0.001 to 100 atm ([`Range`]).
 ///
@@ -152,7 +152,7 @@ pub fn sutton_graves<S: Scalar>(density: S, speed: S, nose_radius: f64) -> S {
 /// ```
 ///
 /// The symbols are those of [`sutton_graves`]. In its own units, C is 17 600 BTU/(ft^1.5 s) and `V_c` 26 000 ft/s; 1 BTU/(ft² s) is
-/// 11 356.527 W/m². The factor (h_s - h_w)/(h_s - h_w300) is that of a cold wall, 1. Valid up to 8 km/s, to some 10 %. Programs that
+/// 11 356.527 W/m². The factor `(h_s - h_w)/(h_s - h_w300)` is that of a cold wall, 1. Valid up to 8 km/s, to some 10 %. Programs that
 /// are built on POST call this formula Chapman's.
 ///
 /// # Reference

@@ -168,14 +168,14 @@ fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
     let start = FlightPath::from(start);
     match flight.case.solver.equations {
-        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, parameters, Cartesian, &start, interrupt),
-        Equations::Spherical => arrival_of::<Spherical, _>(flight, parameters, Spherical, &start, interrupt),
+        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &parameters, Cartesian, &start, interrupt),
+        Equations::Spherical => arrival_of::<Spherical, _>(flight, &parameters, Spherical, &start, interrupt),
     }
 }
 
 fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
     flight: &Trajectory,
-    parameters: Parameters<Dual>,
+    parameters: &Parameters<Dual>,
     formulation: impl Fn(Forces<Dual>) -> M,
     start: &FlightPath<Dual>,
     interrupt: &AtomicBool,
@@ -204,7 +204,7 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
             }
             for happening in now {
                 stage = stage.after(happening, delay);
-                state = push::<F>(&flight.case.events[happening.event].then, state);
+                state = push::<F>(&flight.case.events[happening.event].then, &state);
             }
             forces = stage.forces(leg.regime);
             motion = formulation(forces.clone());
@@ -223,7 +223,7 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
     let delay = condition.map_or(Dual::from(0.0), |quantity| condition_delay::<F>(&stage, &forces, quantity, &place));
     state = from_fn(|i| state[i] + place.rates[i] * delay);
     for happening in happenings {
-        state = push::<F>(&flight.case.events[happening.event].then, state);
+        state = push::<F>(&flight.case.events[happening.event].then, &state);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&state));
@@ -252,13 +252,13 @@ fn turning_delay<F: Formulation<6>>(
     next: Regime,
     place: &Place,
 ) -> Dual {
-    let conditions = now.iter().map(|happening| stage.flight.case.events[happening.event].when);
+    let mut conditions = now.iter().map(|happening| stage.flight.case.events[happening.event].when);
     // A condition that was met by a jump was so because of another.
     let meets = |Condition { quantity, value, .. }: &Condition| {
         let off = forces.quantity(*quantity, place.time.into(), &F::planet_fixed(&place.state)) - *value;
         off.value().abs() <= ON_VALUE * value.abs().max(1.0)
     };
-    if let Some(condition) = conditions.filter(meets).next() {
+    if let Some(condition) = conditions.find(meets) {
         return condition_delay::<F>(stage, forces, condition.quantity, place);
     }
     if let Some(burnout) = stage.burnout().filter(|burnout| burnout.value() <= place.time) {
@@ -290,9 +290,9 @@ fn delay(quantity: Dual, rate: f64) -> Dual {
 }
 
 /// The state after the impulse of an effect, if it has one.
-fn push<F: Formulation<6>>(effect: &Effect, state: [Dual; 6]) -> [Dual; 6] {
-    let Some(Impulse { along, speed_change }) = effect.impulse else { return state };
-    let state = F::planet_fixed(&state);
+fn push<F: Formulation<6>>(effect: &Effect, state: &[Dual; 6]) -> [Dual; 6] {
+    let Some(Impulse { along, speed_change }) = effect.impulse else { return *state };
+    let state = F::planet_fixed(state);
     let velocity = state.velocity + motion::along(along, &state) * Dual::from(speed_change);
     F::coordinates(&PlanetFixed { velocity, ..state }, Dual::from(0.0))
 }
@@ -312,10 +312,10 @@ struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    fn first(flight: &'a Trajectory, parameters: Parameters<Dual>) -> Self {
+    fn first(flight: &'a Trajectory, parameters: &Parameters<Dual>) -> Self {
         let vehicle = &flight.case.vehicle;
         let mass = if vehicle.is_ballistic() { Dual::from(vehicle.mass) } else { parameters.mass };
-        Self { flight, phase: 0, parameters, since: Dual::from(0.0), mass, propellant: None }
+        Self { flight, phase: 0, parameters: *parameters, since: Dual::from(0.0), mass, propellant: None }
     }
 
     fn as_flown(&self) -> &'a Phase {

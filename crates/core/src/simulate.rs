@@ -169,7 +169,7 @@ fn fly<F: Formulation<N>, const N: usize>(
     }
     loop {
         let step = flight.advance()?;
-        if let Some(arrival) = flight.pass(step, &mut observe)? {
+        if let Some(arrival) = flight.pass(&step, &mut observe)? {
             return Ok(arrival);
         }
     }

@@ -79,7 +79,7 @@ fn fly_abreast<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
         for (lane, step) in lanes.iter_mut().zip(steps) {
             let (Some(Lane { index, flight }), Some(step)) = (lane.as_mut(), step) else { continue };
             let end = match step {
-                Ok(step) => flight.pass(step, &mut |_| Ok(())).transpose(),
+                Ok(step) => flight.pass(&step, &mut |_| Ok(())).transpose(),
                 Err(error) => Some(Err(flight.failure(error))),
             };
             if let Some(end) = end {

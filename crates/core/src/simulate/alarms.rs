@@ -11,7 +11,7 @@ use crate::trajectory::Termination;
 
 /// The conditions that have not been met yet.
 pub(super) struct Alarms {
-    alarms: Vec<Alarm>,
+    all: Vec<Alarm>,
     /// The quantities for which a condition waits.
     watched: Vec<Quantity>,
     /// Of these, with their rates, at the end of the last step; the others are zero.
@@ -53,10 +53,10 @@ impl Alarms {
         let ceiling = case.stop.ceiling().map(|condition| (condition, SetsOff::End(Termination::AtmosphereExit)));
         let all = events.chain(stops).chain(ceiling);
         let armed = |(condition, sets_off)| Alarm { condition, sets_off, state: State::Armed };
-        let alarms: Vec<_> = all.map(armed).collect();
-        let waits = |quantity: &Quantity| alarms.iter().any(|alarm| alarm.condition.quantity == *quantity);
+        let all: Vec<_> = all.map(armed).collect();
+        let waits = |quantity: &Quantity| all.iter().any(|alarm| alarm.condition.quantity == *quantity);
         let watched = Quantity::ALL.into_iter().filter(waits).collect();
-        let mut alarms = Self { alarms, watched, last: [Dual64::from(0.0); Quantity::ALL.len()] };
+        let mut alarms = Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()] };
         alarms.last = alarms.read(|quantity| forces.quantity(quantity, start.time, &start.state));
         alarms
     }
@@ -99,7 +99,7 @@ impl Alarms {
 
     /// How far a quantity is before the value of a condition.
     pub(super) fn before(&self, index: usize, forces: &Forces, moment: &Moment) -> Dual64 {
-        before(&self.alarms[index].condition, forces, moment)
+        before(&self.all[index].condition, forces, moment)
     }
 
     /// Goes to the end of a step.
@@ -109,7 +109,7 @@ impl Alarms {
         }
         let next = self.read(|quantity| passage.quantity_at_end(quantity));
         let last = std::mem::replace(&mut self.last, next);
-        for alarm in self.alarms.iter_mut().filter(|alarm| alarm.state == State::Armed) {
+        for alarm in self.all.iter_mut().filter(|alarm| alarm.state == State::Armed) {
             let [last, next] = [last, next].map(|of| alarm.condition.before(of[alarm.condition.quantity as usize]).re);
             // Where conditions are met together, one of them cuts the step.
             if last > 0.0 && next <= 0.0 {
@@ -120,14 +120,14 @@ impl Alarms {
 
     /// The condition that was found to be met at the present instant is.
     pub(super) fn meet(&mut self, index: usize) {
-        self.alarms[index].state = State::Due;
+        self.all[index].state = State::Due;
     }
 
     /// Finds all that are met at the present instant: on their value and moving on, or beyond it by a jump.
     pub(super) fn look(&mut self, forces: &Forces, now: &Moment) {
         let next = self.read(|quantity| forces.quantity(quantity, now.time, &now.state));
         let last = std::mem::replace(&mut self.last, next);
-        for alarm in self.alarms.iter_mut().filter(|alarm| alarm.state == State::Armed) {
+        for alarm in self.all.iter_mut().filter(|alarm| alarm.state == State::Armed) {
             let of = |quantities: [Dual64; _]| alarm.condition.before(quantities[alarm.condition.quantity as usize]);
             let [last, next] = [of(last), of(next)];
             let passes = next.re.abs() <= alarm.condition.resolution() && next.eps < 0.0;
@@ -147,12 +147,12 @@ impl Alarms {
             }
             _ => None,
         };
-        self.alarms.iter_mut().find_map(event)
+        self.all.iter_mut().find_map(event)
     }
 
     /// How the flight ends, if a condition for that is due.
     pub(super) fn end(&self) -> Option<Termination> {
-        self.alarms.iter().find_map(|alarm| match (alarm.state, alarm.sets_off) {
+        self.all.iter().find_map(|alarm| match (alarm.state, alarm.sets_off) {
             (State::Due, SetsOff::End(termination)) => Some(termination),
             _ => None,
         })
@@ -160,11 +160,11 @@ impl Alarms {
 
     /// Whether nothing is watched.
     pub(super) fn is_empty(&self) -> bool {
-        self.alarms.is_empty()
+        self.all.is_empty()
     }
 
     fn armed(&self) -> impl Iterator<Item = (usize, &Alarm)> {
-        self.alarms.iter().enumerate().filter(|(_, alarm)| alarm.state == State::Armed)
+        self.all.iter().enumerate().filter(|(_, alarm)| alarm.state == State::Armed)
     }
 }
 

@@ -103,18 +103,18 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// returns the end of the flight, if that was it.
     pub(super) fn pass(
         &mut self,
-        step: Step<N>,
+        step: &Step<N>,
         observe: &mut impl FnMut(&Passage<F, N>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
         let horizon = self.horizon();
         let Self { motion, integrator, descent, watch, alarms, log, .. } = self;
         let phase = log.phases.len();
         let (landed, alarmed);
-        let mut passage = Passage::new(motion, &step, phase);
+        let mut passage = Passage::new(motion, step, phase);
         let mut cut = cut(&passage, descent, watch);
         if let Some((part, cut)) = &cut {
             self.looks += passage.evaluations();
-            landed = land(integrator, motion, &step, step.time(*part), |moment| match cut {
+            landed = land(integrator, motion, step, step.time(*part), |moment| match cut {
                 Cut::Exit(exit) => exit.inside(motion.forces(), moment),
                 Cut::Ground | Cut::Alarm(_) => descent.height(moment),
             });

@@ -50,6 +50,7 @@ enum Quantity {
 
 /// What there is to know at every instant of a flight beside its motion.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is asked for by its name")]
 pub struct Known {
     /// Whether the atmosphere has a temperature.
     pub temperature: bool,

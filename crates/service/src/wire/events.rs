@@ -234,20 +234,12 @@ impl Effect {
         let mass = object.optional_number("mass", Bound::POSITIVE);
         let by_area = !object.is_of_kind("aerodynamics", "ballistic");
         let reference_area = if by_area { object.optional_number("reference_area", Bound::NON_NEGATIVE) } else { None };
-        let aerodynamics = object.has("aerodynamics").then(|| object.object("aerodynamics", Aerodynamics::read));
-        let delta_v = object.has("delta_v").then(|| object.object("delta_v", DeltaV::read));
-        let thrust = object.has("thrust").then(|| {
-            object.word_or_object("thrust", ("off", ThrustCommand::Off), |object| {
-                Thrust::read(object).map(ThrustCommand::On)
-            })
-        });
-        Some(Self {
-            mass,
-            reference_area,
-            aerodynamics: aerodynamics.flatten(),
-            delta_v: delta_v.flatten(),
-            thrust: thrust.flatten(),
-        })
+        let aerodynamics = object.optional_object("aerodynamics", Aerodynamics::read);
+        let delta_v = object.optional_object("delta_v", DeltaV::read);
+        let off = ("off", ThrustCommand::Off);
+        let on = |object: &mut Object| Thrust::read(object).map(ThrustCommand::On);
+        let thrust = if object.has("thrust") { object.word_or_object("thrust", off, on).map(Some) } else { Some(None) };
+        Some(Self { mass, reference_area, aerodynamics: aerodynamics?, delta_v: delta_v?, thrust: thrust? })
     }
 
     fn to_core(&self) -> CoreEffect {

@@ -473,6 +473,15 @@ impl Object<'_> {
         object(value, pointer, self.context, read)
     }
 
+    /// An object that may be left out: then there is nothing, and no fault, `Some(None)`.
+    pub fn optional_object<T>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<Option<T>> {
+        if self.has(name) { self.object(name, read).map(Some) } else { Some(None) }
+    }
+
     /// An object with a default.
     pub fn object_or<T>(
         &mut self,

@@ -198,10 +198,10 @@ impl SimulateRequest {
         let planet = object.object_or("planet", json!({}), Planet::read);
         let atmosphere = object.object_or("atmosphere", json!({"type": "exponential"}), Atmosphere::read);
         let density_factor = object.number_or("density_factor", Bound::NON_NEGATIVE, 1.0);
-        let wind = object.has("wind").then(|| object.object("wind", Wind::read));
+        let wind = object.optional_object("wind", Wind::read);
         let vehicle = object.object("vehicle", Vehicle::read);
         let control = object.object_or("control", json!({}), Control::read);
-        let heating = object.has("heating").then(|| object.object("heating", Heating::read));
+        let heating = object.optional_object("heating", Heating::read);
         let events = object.optional_objects("events", MOST_EVENTS, Event::read);
         let has_epoch = object.has("epoch");
         let initial_state = object.object("initial_state", |object| {
@@ -223,10 +223,10 @@ impl SimulateRequest {
             planet: planet?,
             atmosphere: atmosphere?,
             density_factor: density_factor?,
-            wind: wind.flatten(),
+            wind: wind?,
             vehicle: vehicle?,
             control: control?,
-            heating: heating.flatten(),
+            heating: heating?,
             events: events?,
             initial_state: initial_state?,
             stop: stop?,
