@@ -137,7 +137,7 @@ pub const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 /// # Examples
 /// ```
 /// // The course's own example: 13.6 W/cm².
-/// let flux = reentry::heating::sutton_graves(3.1459e-4, 3535.0, 1.0);
+/// let flux = reentry::heating::sutton_graves(3.1459e-4_f64, 3535.0, 1.0);
 /// assert!((flux - 13.6e4).abs() < 0.05e4);
 /// ```
 #[inline(always)]
