@@ -1,10 +1,19 @@
 //! The answer: how the flight ended, its extremes, and its state at any time.
 
+mod leg;
+mod sampling;
+
+pub use sampling::{Sampling, TooManyInstants};
+
+pub(crate) use leg::{Leg, LegStep, Motion};
+
+use leg::LegInterpolant;
+
 use crate::atmosphere::AtmosphereSample;
 use crate::coordinates::{FlightPath, GreatCircle, Inertial, PlanetFixed, latitude_and_altitude};
 use crate::heating;
-use crate::integrate::{Interpolant, Statistics, Step};
-use crate::motion::{Cartesian, Forces, Formulation, Loads, Regime, Spherical, heat_load};
+use crate::integrate::Statistics;
+use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical};
 use crate::scenario::{Case, Equations, Phase};
 
 pub use crate::motion::Lookup;
@@ -143,27 +152,6 @@ impl Warning {
     }
 }
 
-/// The instants at which a trajectory is wanted; its start and its end always belong to them.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Sampling {
-    /// So many a step, the last at its end: many where the motion is fast, few where it is slow.
-    PerStep(usize),
-    /// Every so many seconds.
-    Interval(f64),
-    /// So many, evenly in time, both ends included.
-    Count(usize),
-    /// These, ascending, in s; those after the end are dropped.
-    Times(Vec<f64>),
-}
-
-/// The flight asks for more instants than allowed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the flight gives more than the {limit} rows allowed")]
-pub struct TooManyInstants {
-    /// The limit.
-    pub limit: usize,
-}
-
 /// The state and the loads at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightPoint {
@@ -250,21 +238,6 @@ pub(crate) struct Happening {
     pub(crate) event: usize,
     pub(crate) before: Instant,
     pub(crate) after: Instant,
-}
-
-/// A step of a flight, and the phase and the regime of its models during it.
-#[derive(Clone, Debug)]
-pub(crate) struct Leg {
-    pub(crate) step: LegStep,
-    pub(crate) phase: usize,
-    pub(crate) regime: Regime,
-}
-
-/// A step, with or without the heat load.
-#[derive(Clone, Debug)]
-pub(crate) enum LegStep {
-    Plain(Step<6>),
-    Heated(Step<7>),
 }
 
 /// A finished flight.
@@ -393,49 +366,6 @@ impl Trajectory {
         self.forces(0, self.flown.start.regime).drag_under(point.loads.dynamic_pressure)
     }
 
-    /// The instants of a sampling, strictly increasing, s.
-    ///
-    /// # Errors
-    /// When there are more than `limit`.
-    pub fn instants(&self, sampling: &Sampling, limit: usize) -> Result<Vec<f64>, TooManyInstants> {
-        let end = self.end_time();
-        let wanted = match sampling {
-            Sampling::PerStep(samples) => samples.saturating_mul(self.flown.legs.len()),
-            Sampling::Count(count) => *count,
-            Sampling::Interval(_) | Sampling::Times(_) => 0,
-        };
-        if wanted > limit {
-            return Err(TooManyInstants { limit });
-        }
-        let mut instants = Instants { times: vec![0.0], end, limit };
-        match sampling {
-            Sampling::PerStep(samples) => {
-                for leg in &self.flown.legs {
-                    for sample in 1..=*samples {
-                        instants.push(leg.time(ratio(sample, *samples)))?;
-                    }
-                }
-            }
-            Sampling::Interval(interval) => {
-                let mut sample = 1;
-                while instants.push(ratio(sample, 1) * interval)? {
-                    sample += 1;
-                }
-            }
-            Sampling::Count(count) => {
-                for sample in 1..count - 1 {
-                    instants.push(end * ratio(sample, count - 1))?;
-                }
-            }
-            Sampling::Times(times) => {
-                for time in times {
-                    instants.push(*time)?;
-                }
-            }
-        }
-        instants.finish()
-    }
-
     /// The states at ascending times, s.
     ///
     /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
@@ -540,131 +470,4 @@ impl Trajectory {
             wall_temperature: wall.map(|(nose, flux)| nose.wall_temperature(flux.total())),
         }
     }
-}
-
-/// The equations of either formulation.
-pub(crate) enum Motion {
-    Cartesian(Cartesian),
-    Spherical(Spherical),
-}
-
-/// The motion inside a leg.
-pub(crate) enum LegInterpolant {
-    Plain(Interpolant<6>),
-    Heated(Interpolant<7>),
-}
-
-impl Leg {
-    /// s.
-    pub(crate) fn start_time(&self) -> f64 {
-        match &self.step {
-            LegStep::Plain(step) => step.start_time,
-            LegStep::Heated(step) => step.start_time,
-        }
-    }
-
-    /// s.
-    pub(crate) fn end_time(&self) -> f64 {
-        match &self.step {
-            LegStep::Plain(step) => step.end_time,
-            LegStep::Heated(step) => step.end_time,
-        }
-    }
-
-    /// The instant at a part of the leg, s.
-    pub(crate) fn time(&self, part: f64) -> f64 {
-        match &self.step {
-            LegStep::Plain(step) => step.time(part),
-            LegStep::Heated(step) => step.time(part),
-        }
-    }
-}
-
-impl LegInterpolant {
-    /// The state and the heat load, J/m², at an instant.
-    pub(crate) fn at(&self, motion: &Motion, time: f64) -> (PlanetFixed<f64>, Option<f64>) {
-        match self {
-            Self::Plain(interpolant) => motion.state(&interpolant.state_at(time)),
-            Self::Heated(interpolant) => motion.state(&interpolant.state_at(time)),
-        }
-    }
-}
-
-impl Motion {
-    pub(crate) fn forces(&self) -> &Forces {
-        match self {
-            Self::Cartesian(Cartesian(forces)) | Self::Spherical(Spherical(forces)) => forces,
-        }
-    }
-
-    pub(crate) fn forces_mut(&mut self) -> &mut Forces {
-        match self {
-            Self::Cartesian(Cartesian(forces)) | Self::Spherical(Spherical(forces)) => forces,
-        }
-    }
-
-    pub(crate) fn interpolant(&self, step: &LegStep) -> LegInterpolant {
-        match (self, step) {
-            (Self::Cartesian(motion), LegStep::Plain(step)) => LegInterpolant::Plain(step.interpolant(motion)),
-            (Self::Cartesian(motion), LegStep::Heated(step)) => LegInterpolant::Heated(step.interpolant(motion)),
-            (Self::Spherical(motion), LegStep::Plain(step)) => LegInterpolant::Plain(step.interpolant(motion)),
-            (Self::Spherical(motion), LegStep::Heated(step)) => LegInterpolant::Heated(step.interpolant(motion)),
-        }
-    }
-
-    /// The state at the end of a step.
-    pub(crate) fn end(&self, step: &LegStep) -> PlanetFixed<f64> {
-        match step {
-            LegStep::Plain(step) => self.state(&step.end).0,
-            LegStep::Heated(step) => self.state(&step.end).0,
-        }
-    }
-
-    /// The state and the heat load, J/m², of numbers of the formulation.
-    fn state<const N: usize>(&self, coordinates: &[f64; N]) -> (PlanetFixed<f64>, Option<f64>)
-    where
-        Cartesian: Formulation<N>,
-        Spherical: Formulation<N>,
-    {
-        let state = match self {
-            Self::Cartesian(_) => Cartesian::planet_fixed(coordinates),
-            Self::Spherical(_) => Spherical::planet_fixed(coordinates),
-        };
-        (state, heat_load(coordinates))
-    }
-}
-
-/// Instants between the start and the end, as they are gathered.
-struct Instants {
-    times: Vec<f64>,
-    end: f64,
-    limit: usize,
-}
-
-impl Instants {
-    /// Adds an instant that follows the last and comes before the end; false once the end is reached.
-    fn push(&mut self, time: f64) -> Result<bool, TooManyInstants> {
-        let inside = time < self.end;
-        let last = self.times.last().copied().unwrap_or(0.0);
-        if inside && time > last {
-            // The final instant still has to find a place.
-            if self.times.len() + 1 >= self.limit {
-                return Err(TooManyInstants { limit: self.limit });
-            }
-            self.times.push(time);
-        }
-        Ok(inside)
-    }
-
-    fn finish(mut self) -> Result<Vec<f64>, TooManyInstants> {
-        if self.end > 0.0 {
-            self.times.push(self.end);
-        }
-        if self.times.len() > self.limit { Err(TooManyInstants { limit: self.limit }) } else { Ok(self.times) }
-    }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "rows are counted far below 2^52")]
-fn ratio(part: usize, whole: usize) -> f64 {
-    part as f64 / whole as f64
 }

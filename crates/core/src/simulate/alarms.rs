@@ -158,6 +158,11 @@ impl Alarms {
         })
     }
 
+    /// Whether any condition is met at the present instant.
+    pub(super) fn is_due(&self) -> bool {
+        self.all.iter().any(|alarm| alarm.state == State::Due)
+    }
+
     /// Whether nothing is watched.
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty()

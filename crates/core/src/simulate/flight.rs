@@ -111,14 +111,15 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let phase = log.phases.len();
         let (landed, alarmed);
         let mut passage = Passage::new(motion, step, phase);
-        let mut cut = cut(&passage, descent, watch);
-        if let Some((part, cut)) = &cut {
+        let mut cut = None;
+        if let Some((part, first)) = first_cut(&passage, descent, watch) {
             self.looks += passage.evaluations();
-            landed = land(integrator, motion, step, step.time(*part), |moment| match cut {
+            landed = land(integrator, motion, step, step.time(part), |moment| match &first {
                 Cut::Exit(exit) => exit.inside(motion.forces(), moment),
                 Cut::Ground | Cut::Alarm(_) => descent.height(moment),
             });
             passage = Passage::new(motion, &landed, phase);
+            cut = Some(first);
         }
         // What is met where the step ends does not cut it again.
         if let Some((part, index)) = alarms.first(&passage).filter(|(part, _)| *part < AT_END) {
@@ -127,7 +128,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             alarmed =
                 land(integrator, motion, step, step.time(part), |moment| alarms.before(index, motion.forces(), moment));
             passage = Passage::new(motion, &alarmed, phase);
-            cut = Some((part, Cut::Alarm(index)));
+            cut = Some(Cut::Alarm(index));
         }
         descent.follow(&passage);
         watch.follow(&passage);
@@ -139,11 +140,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
         let mut ending = (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
         let mut exit = None;
-        let turns = cut.is_some() || self.time >= horizon;
+        let turns = cut.is_some() || self.alarms.is_due() || self.time >= horizon;
         match cut {
-            Some((_, Cut::Ground)) => ending = Some(Termination::SurfaceImpact),
-            Some((_, Cut::Exit(left))) => exit = Some(left),
-            Some((_, Cut::Alarm(index))) => self.alarms.meet(index),
+            Some(Cut::Ground) => ending = Some(Termination::SurfaceImpact),
+            Some(Cut::Exit(left)) => exit = Some(left),
+            Some(Cut::Alarm(index)) => self.alarms.meet(index),
             None => {}
         }
         if turns { self.turn(exit, ending) } else { Ok(None) }
@@ -186,6 +187,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// Finds the conditions that are met at the present instant.
     fn look(&mut self) {
         let derivative = self.motion.derivative(self.time, &self.state);
+        self.looks += 1;
         let now = Moment::of::<F, N>(self.time, &self.state, &derivative);
         self.alarms.look(self.motion.forces(), &now);
     }
@@ -264,7 +266,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 }
 
 /// The part of a step at which it meets the stop altitude or leaves the stretch of a formula, whichever comes first.
-fn cut<F: Formulation<N>, const N: usize>(
+fn first_cut<F: Formulation<N>, const N: usize>(
     passage: &Passage<F, N>,
     descent: &Descent,
     watch: &Watch,
