@@ -303,6 +303,12 @@ fn a_flight_ends_at_its_ceiling_and_at_its_conditions() {
     let [event] = events(&pushed)[..] else { unreachable!() };
     assert_eq!(pushed.last().flight_path.speed.to_bits(), event.after.flight_path.speed.to_bits());
     near("pushed", event.after.flight_path.speed - event.before.flight_path.speed, 500.0, 1e-9);
+    // What is felt at the end counts.
+    let mach = falls(Quantity::Mach, 0.9);
+    let stop = Stop { when: vec![mach], ..Stop::default() };
+    let opened = fly(&Case { events: vec![Event { when: mach, then: parachute() }], stop, ..capsule() });
+    assert_eq!(opened.peaks().load_factor.value.to_bits(), opened.last().loads.load_factor.to_bits());
+    assert!(opened.last().loads.load_factor > 10.0);
     // On the ground, both at once.
     let landed = fly(&Case { events: vec![mark(falls(Quantity::Altitude, 0.0))], ..skip() });
     assert_eq!((landed.termination(), events(&landed).len()), (Termination::SurfaceImpact, 1));
