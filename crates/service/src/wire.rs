@@ -19,6 +19,7 @@ pub mod batch;
 pub mod convert;
 pub mod scenario;
 pub mod sensitivities;
+pub mod track;
 pub mod trajectory;
 pub mod verification;
 

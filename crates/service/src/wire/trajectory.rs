@@ -317,6 +317,16 @@ impl Serialize for Values<'_> {
 }
 
 impl Columns {
+    /// The instants.
+    pub fn points(&self) -> &[FlightPoint] {
+        &self.points
+    }
+
+    /// The instant t = 0.
+    pub fn epoch(&self) -> Option<Instant> {
+        self.epoch
+    }
+
     /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
     ///
     /// # Errors
