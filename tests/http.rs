@@ -22,3 +22,4 @@ mod output;
 mod sidereal_time;
 mod simulate;
 mod surface;
+mod tracks;

@@ -15,6 +15,7 @@ use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
 use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
 use crate::wire::sensitivities::Sensitivities;
+use crate::wire::track::Track;
 use crate::wire::trajectory::{Extras, SimulateResponse};
 use crate::wire::verification::Verification;
 
@@ -30,14 +31,22 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let points = rows(&job, &flight, row_limit)?;
     let extras = extras(&job, &flight, interrupt)?;
     let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
+    let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
     Ok(match (format, &response.trajectory) {
-        (Format::Csv, Some(trajectory)) => trajectory.to_csv()?,
+        (Format::Csv, Some(rows)) => rows.to_csv()?,
+        (Format::Geojson, Some(rows)) => track(rows)?.to_geojson()?,
+        (Format::Kml, Some(rows)) => track(rows)?.to_kml()?,
+        (Format::Czml, Some(rows)) => track(rows)?.to_czml()?,
         _ => serde_json::to_vec(&response)?,
     })
 }
 
 fn wanted(format: Format) -> Wanted {
-    if format == Format::Csv { Wanted::Rows } else { Wanted::Answer }
+    match format {
+        Format::Json | Format::Ndjson => Wanted::Answer,
+        Format::Csv => Wanted::Rows,
+        Format::Geojson | Format::Kml | Format::Czml => Wanted::Map,
+    }
 }
 
 /// What a job asks for beyond the flight.

@@ -15,6 +15,7 @@ use crate::answer;
 use crate::cli::cases::{Cases, States};
 use crate::cli::healthcheck::Healthcheck;
 use crate::config::Config;
+use crate::format::Format;
 use crate::router::document;
 
 /// Flies vehicles back through the atmosphere.
@@ -33,10 +34,26 @@ pub enum Command {
     Serve(Config),
     /// Fly a case, or each of a list of cases: the JSON of POST /simulate
     #[command(after_help = [SIMULATE_EXAMPLES, EXIT_CODES].concat())]
-    Simulate(Cases),
+    Simulate {
+        /// The cases.
+        #[command(flatten)]
+        cases: Cases,
+
+        /// What is written
+        #[arg(long, short, value_parser = Format::offered(&Format::OF_FLIGHTS), default_value = "json")]
+        format: Format,
+    },
     /// Set a closed-form theory beside a flight, or beside each of a list: the JSON of POST /analytic
     #[command(after_help = [ANALYTIC_EXAMPLES, EXIT_CODES].concat())]
-    Analytic(Cases),
+    Analytic {
+        /// The cases.
+        #[command(flatten)]
+        cases: Cases,
+
+        /// What is written
+        #[arg(long, short, value_parser = Format::offered(&Format::OF_THEORIES), default_value = "json")]
+        format: Format,
+    },
     /// Write a state in every coordinate system, or each of a list of states: the JSON of POST /convert
     #[command(after_help = [CONVERT_EXAMPLES, EXIT_CODES].concat())]
     Convert {
@@ -71,6 +88,7 @@ Exit codes:
 const SIMULATE_EXAMPLES: &str = r#"Examples:
   reentry simulate case.json
   reentry simulate case.json --format csv --output trajectory.csv
+  reentry simulate case.json --format kml --output track.kml
   reentry simulate - < case.json | jq .final_state
   reentry simulate cases.json > answers.ndjson
   reentry simulate - --format csv <<'END'
@@ -80,7 +98,8 @@ const SIMULATE_EXAMPLES: &str = r#"Examples:
   END
 
 A list of cases, a JSON array, gives a line of JSON a case, in order. A case that fails has its problem document there and on
-standard error, and the others fly all the same. With --format csv a list gives one table, whose first column, case, counts from 0.
+standard error, and the others fly all the same. With --format csv a list gives one table, whose first column, case, counts from 0,
+with geojson and czml a map a line; kml takes one case alone.
 
 "#;
 
@@ -148,8 +167,8 @@ impl Command {
     pub fn run(self, serve: impl FnOnce(Config) -> io::Result<()>) -> Result<(), Failure> {
         match self {
             Self::Serve(config) => Ok(serve(config)?),
-            Self::Simulate(cases) => cases.run(answer::simulate),
-            Self::Analytic(cases) => cases.run(answer::analytic),
+            Self::Simulate { cases, format } => cases.run(format, answer::simulate),
+            Self::Analytic { cases, format } => cases.run(format, answer::analytic),
             Self::Convert { states, .. } => states.run(|tree, _, _, _| answer::convert(tree)),
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;

@@ -4,6 +4,7 @@ use axum::extract::Query;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::error::ApiError;
 
@@ -14,19 +15,39 @@ pub enum Format {
     Json,
     /// The trajectory alone as a table, text/csv
     Csv,
+    /// The track on a map, application/geo+json
+    Geojson,
+    /// The track for Google Earth, application/vnd.google-earth.kml+xml
+    Kml,
+    /// The track for Cesium, application/czml+json
+    Czml,
     /// A line of JSON for each case of a batch, application/x-ndjson
     #[value(skip)]
     Ndjson,
 }
 
 impl Format {
+    /// Those of a flight.
+    pub const OF_FLIGHTS: [Self; 5] = [Self::Json, Self::Csv, Self::Geojson, Self::Kml, Self::Czml];
+    /// Those of a theory beside a flight.
+    pub const OF_THEORIES: [Self; 2] = [Self::Json, Self::Csv];
+
     /// The name in `?format=`.
     fn name(self) -> &'static str {
         match self {
             Self::Json => "json",
             Self::Csv => "csv",
+            Self::Geojson => "geojson",
+            Self::Kml => "kml",
+            Self::Czml => "czml",
             Self::Ndjson => "ndjson",
         }
+    }
+
+    /// Those of a command, for its flag.
+    pub fn offered(formats: &[Self]) -> impl TypedValueParser<Value = Self> + use<> {
+        let names: Vec<_> = formats.iter().filter_map(Self::to_possible_value).collect();
+        PossibleValuesParser::new(names).try_map(|name| Self::from_str(&name, false))
     }
 
     /// The media type.
@@ -34,6 +55,9 @@ impl Format {
         match self {
             Self::Json => "application/json",
             Self::Csv => "text/csv; charset=utf-8; header=present",
+            Self::Geojson => "application/geo+json",
+            Self::Kml => "application/vnd.google-earth.kml+xml",
+            Self::Czml => "application/czml+json",
             Self::Ndjson => "application/x-ndjson",
         }
     }

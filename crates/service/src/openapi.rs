@@ -67,7 +67,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
         for (path, formats) in [
-            ("/simulate", json!(["json", "csv"])),
+            ("/simulate", json!(["json", "csv", "geojson", "kml", "czml"])),
             ("/analytic", json!(["json", "csv"])),
             ("/simulate/batch", json!(["ndjson"])),
             ("/convert", json!(["json"])),

@@ -22,6 +22,7 @@ pub mod columns;
 pub mod convert;
 pub mod scenario;
 pub mod sensitivities;
+pub mod track;
 pub mod trajectory;
 pub mod verification;
 pub mod warning;

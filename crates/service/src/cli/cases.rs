@@ -24,10 +24,6 @@ pub struct Cases {
     #[command(flatten)]
     states: States,
 
-    /// What is written
-    #[arg(long, short, value_enum, default_value_t = Format::Json)]
-    format: Format,
-
     /// Rows that a trajectory may have, so that a slip of the pen does not fill the memory
     #[arg(long, default_value_t = 1_000_000)]
     row_limit: usize,
@@ -45,12 +41,12 @@ pub struct States {
 }
 
 impl Cases {
-    /// Answers every case.
+    /// Answers every case in a format.
     ///
     /// # Errors
     /// When a case fails, or a file cannot be read or written.
-    pub fn run(&self, answer: impl Answer) -> Result<(), Failure> {
-        Run { place: self.states.place(), format: self.format, row_limit: self.row_limit, answer }.all(&self.states)
+    pub fn run(&self, format: Format, answer: impl Answer) -> Result<(), Failure> {
+        Run { place: self.states.place(), format, row_limit: self.row_limit, answer }.all(&self.states)
     }
 }
 
@@ -103,6 +99,11 @@ impl<A: Answer> Run<A> {
             Ok(Some(cases)) if cases.is_empty() => {
                 Err(self.failed(&ApiError::Invalid(vec![Fault::new("", "must have at least 1 case, got none")])))
             }
+            Ok(Some(_)) if self.format == Format::Kml => {
+                let detail =
+                    "must be one case where KML is asked for, not a list: a document of XML is no line of a file";
+                Err(self.failed(&ApiError::Invalid(vec![Fault::new("", detail)])))
+            }
             Ok(Some(cases)) => self.many(&cases, &mut output),
             Ok(None) => self.one(&text, &mut output),
             Err(error) => Err(self.failed(&error.into())),
@@ -127,7 +128,7 @@ impl<A: Answer> Run<A> {
             bar.inc(1);
             let answer = match self.format {
                 Format::Csv => answer.and_then(|csv| table(index, &csv, &mut header)),
-                Format::Json | Format::Ndjson => answer,
+                _ => answer,
             };
             if let Err(error) = &answer {
                 let place = format!("{}: case {index}{}", self.place, name(cases[index]));

@@ -35,7 +35,7 @@ use crate::wire::json;
     ),
 )]
 pub async fn analytic(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
-    let format = Format::negotiate(&parts, &[Format::Json, Format::Csv])?;
+    let format = Format::negotiate(&parts, &Format::OF_THEORIES)?;
     let row_limit = app.config.row_limit;
     let run = move |interrupt: &AtomicBool| answer::analytic(json::parse(&body)?, format, row_limit, interrupt);
     let body = app.compute.run(run).await?;

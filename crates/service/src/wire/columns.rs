@@ -361,6 +361,16 @@ impl Columns {
         Self { points, chosen, unit, epoch: known.epoch }
     }
 
+    /// The instants.
+    pub fn points(&self) -> &[FlightPoint] {
+        &self.points
+    }
+
+    /// The instant t = 0.
+    pub fn epoch(&self) -> Option<Instant> {
+        self.epoch
+    }
+
     /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
     ///
     /// # Errors

@@ -84,9 +84,13 @@ impl Instant {
         let fault = || format!("must be an RFC 3339 time such as \"2026-11-22T12:00:00Z\", got {}", shown(value));
         let text = value.as_str().and_then(plain_rfc3339).ok_or_else(fault)?;
         let epoch = Epoch::from_gregorian_str(&text).map_err(|_| fault())?;
-        let noon_2000 = Epoch::from_gregorian_utc(2000, 1, 1, 12, 0, 0, 0);
-        let elapsed = epoch.to_utc_duration() - noon_2000.to_utc_duration();
+        let elapsed = epoch.to_utc_duration() - Self::noon_2000().epoch.to_utc_duration();
         Ok(Self { epoch, days: elapsed.to_unit(Unit::Day) })
+    }
+
+    /// 2000 January 1, 12 h UTC.
+    pub fn noon_2000() -> Self {
+        Self { epoch: Epoch::from_gregorian_utc(2000, 1, 1, 12, 0, 0, 0), days: 0.0 }
     }
 
     /// The time so many seconds later; none after the year 9999, where RFC 3339 ends.

@@ -30,14 +30,14 @@ pub struct SimulateRequest {
     /// The unit of every angle in the request and in the answer.
     #[schema(required = false, default = "rad")]
     pub angle_unit: AngleUnit,
-    /// Whether the answer repeats the request, with every default filled in, as `case`; CSV has no place for it.
+    /// Whether the answer repeats the request, with every default filled in, as `case`; CSV and maps have no place for it.
     #[schema(required = false, default = false)]
     pub echo: bool,
     /// Whether the answer has the derivatives of the flight's end by the numbers of the case, for the computing of about six flights.
-    /// Not with CSV.
+    /// Not with CSV or on a map.
     #[schema(required = false, default = false)]
     pub sensitivities: bool,
-    /// Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV.
+    /// Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV or on a map.
     #[schema(required = false, default = false)]
     pub verify: bool,
     /// The instant t = 0: an RFC 3339 time. Where `sidereal_time` is absent, it follows from the Earth rotation angle.
@@ -116,7 +116,7 @@ pub struct Output {
     #[schema(required = false, value_type = bool)]
     pub trajectory: Option<bool>,
     /// The columns of the trajectory, in this order; without it, all that the case has.
-    /// Not with `"trajectory": false`, and not for `/analytic`, which has columns of its own.
+    /// Not with `"trajectory": false`, not on a map, and not for `/analytic`, which has columns of its own.
     #[schema(required = false, value_type = Vec<String>)]
     pub columns: Option<Vec<&'static Column>>,
 }
@@ -149,6 +149,8 @@ pub enum Wanted {
     Answer,
     /// The trajectory alone.
     Rows,
+    /// The trajectory on a map.
+    Map,
 }
 
 /// A sound request, ready to fly.
@@ -170,18 +172,26 @@ impl Job {
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
     pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
-        let request = reader::read(&mut tree, SimulateRequest::read)?;
+        let mut request = reader::read(&mut tree, SimulateRequest::read)?;
         let sampling = request.output.sampling();
         let mut misplaced = request.beyond_rows(wanted);
         misplaced.extend(request.impossible_columns());
-        if wanted == Wanted::Rows && sampling.is_none() {
-            let detail = "must not be false where CSV is asked for, which is nothing but the trajectory";
+        if wanted != Wanted::Answer && sampling.is_none() {
+            let detail = "must not be false where CSV or a map is asked for, which is made of the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
+        }
+        if wanted == Wanted::Map && request.output.columns.is_some() {
+            let detail = "must be left out where a map is asked for, which has no columns";
+            misplaced.push(Fault::new("/output/columns", detail));
         }
         let scenario = match request.try_into_scenario() {
             Ok(scenario) if misplaced.is_empty() => scenario,
             scenario => return Err(scenario.err().into_iter().flatten().chain(misplaced).collect()),
         };
+        if wanted == Wanted::Map {
+            // Maps know no other unit, and so do the warnings on them.
+            request.angle_unit = AngleUnit::Deg;
+        }
         let echo = request.echo.then_some(tree);
         Ok(Self { scenario, sampling, request, echo })
     }
@@ -238,8 +248,8 @@ impl SimulateRequest {
     /// What is asked for and has no place where the rows alone are wanted.
     pub(super) fn beyond_rows(&self, wanted: Wanted) -> Vec<Fault> {
         let asked = [("/sensitivities", self.sensitivities), ("/verify", self.verify)];
-        let misplaced = asked.into_iter().filter(|(_, asked)| *asked && wanted == Wanted::Rows);
-        let detail = "must not be true where CSV is asked for, which has rows and nothing else";
+        let misplaced = asked.into_iter().filter(|(_, asked)| *asked && wanted != Wanted::Answer);
+        let detail = "must not be true where CSV or a map is asked for, which has no place for the answer";
         misplaced.map(|(pointer, _)| Fault::new(pointer, detail)).collect()
     }
 

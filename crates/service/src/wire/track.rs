@@ -1,0 +1,170 @@
+//! A flight on a map: the places of its rows, and what is marked beside them, as `GeoJSON`, KML and CZML.
+//!
+//! Longitudes and latitudes are in degrees, whatever the unit of the request; latitudes and altitudes are geodetic, as the formats ask
+//! for. They are those of the case's planet: on a map of the Earth they lie where the map has these numbers.
+
+mod czml;
+mod geojson;
+mod kml;
+
+use std::iter;
+
+use reentry::trajectory::{EventPoint, FlightPoint, Trajectory};
+use serde::Serialize;
+use serde_json::json;
+
+use super::columns::Columns;
+use super::epoch::{Instant, Utc};
+use super::reader::Fault;
+use super::trajectory::{Peak, SimulateResponse};
+
+/// A flight, ready to be drawn.
+#[derive(Clone, Debug)]
+pub struct Track<'a> {
+    answer: &'a SimulateResponse,
+    epoch: Option<Instant>,
+    vertices: Vec<Vertex>,
+    points: Vec<NamedPoint>,
+}
+
+/// A place at an instant.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    /// Since the start, s.
+    time: f64,
+    /// Degrees, in [-180, 180].
+    longitude: f64,
+    /// Degrees, geodetic.
+    latitude: f64,
+    /// Geodetic, m.
+    altitude: f64,
+}
+
+/// What is marked beside the track, and what a user sees of it.
+#[derive(Clone, Debug, Serialize)]
+struct NamedPoint {
+    name: String,
+    kind: &'static str,
+    quantity: &'static str,
+    value: f64,
+    unit: &'static str,
+    time: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    utc: Option<Utc>,
+    /// As the answer has it: along the radius vector, m.
+    altitude: f64,
+    #[serde(skip)]
+    place: Vertex,
+}
+
+impl<'a> Track<'a> {
+    /// The track of a flight, with a vertex a row.
+    ///
+    /// # Errors
+    /// When the flight goes on after the last year that can be written.
+    pub fn new(answer: &'a SimulateResponse, rows: &Columns, flight: &Trajectory) -> Result<Self, Fault> {
+        let epoch = rows.epoch();
+        if epoch.is_some_and(|epoch| epoch.utc(flight.end_time()).is_none()) {
+            return Err(Fault::new(
+                "/epoch",
+                "must let the flight end before the year 10000, where a map is asked for",
+            ));
+        }
+        let vertices = rows.points().iter().map(Vertex::of).collect();
+        Ok(Self { answer, epoch, vertices, points: marked(answer, flight, epoch) })
+    }
+
+    /// The name of the flight.
+    fn name(&self) -> &str {
+        self.answer.name.as_deref().unwrap_or("flight")
+    }
+
+    /// The instant of a time, with an epoch.
+    fn utc(&self, time: f64) -> Option<Utc> {
+        self.epoch.and_then(|epoch| epoch.utc(time))
+    }
+
+    /// How the flight ended and what it warns of, for people.
+    fn notes(&self) -> String {
+        let end = self.points.first().map(|end| format!("{}: {}", end.name, end.description()));
+        let warnings = self.answer.warnings.iter().map(|warning| warning.detail.clone());
+        end.into_iter().chain(warnings).collect::<Vec<_>>().join("; ")
+    }
+}
+
+/// Everything that is marked: the end, the peaks, and the events.
+fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Instant>) -> Vec<NamedPoint> {
+    let point = |kind, name, (quantity, value, unit), point: &FlightPoint| NamedPoint {
+        name,
+        kind,
+        quantity,
+        value,
+        unit,
+        time: point.time,
+        utc: epoch.and_then(|epoch| epoch.utc(point.time)),
+        altitude: point.loads.altitude,
+        place: Vertex::of(point),
+    };
+    let speed = |point: &FlightPoint| ("speed", point.flight_path.speed, "m/s");
+    let last = flight.last();
+    let termination = json!(answer.termination);
+    let end = point("end", words(termination.as_str().unwrap_or_default()), speed(&last), &last);
+    let peaks = &answer.peaks;
+    let peaks = [
+        ("deceleration", "m/s²", Some(peaks.deceleration)),
+        ("load_factor", "g", Some(peaks.load_factor)),
+        ("dynamic_pressure", "Pa", Some(peaks.dynamic_pressure)),
+        ("altitude", "m", Some(peaks.altitude)),
+        ("mach", "", peaks.mach),
+        ("convective_heat_flux", "W/m²", peaks.convective_heat_flux),
+        ("radiative_heat_flux", "W/m²", peaks.radiative_heat_flux.filter(|peak| peak.value > 0.0)),
+        ("heat_flux", "W/m²", peaks.heat_flux),
+        ("heat_load", "J/m²", peaks.heat_load),
+        ("wall_temperature", "K", peaks.wall_temperature),
+    ];
+    let peaks = peaks.into_iter().filter_map(|(quantity, unit, peak)| {
+        let Peak { value, time, .. } = peak?;
+        Some(point("peak", format!("peak {}", words(quantity)), (quantity, value, unit), &flight.at(time)))
+    });
+    let names = answer.events.iter().flatten();
+    let events = names.zip(flight.events()).map(|(report, EventPoint { before, .. })| {
+        let name = report.name.clone().unwrap_or_else(|| format!("event {}", report.index));
+        point("event", name, speed(&before), &before)
+    });
+    iter::once(end).chain(peaks).chain(events).collect()
+}
+
+impl Vertex {
+    fn of(point: &FlightPoint) -> Self {
+        Self {
+            time: point.time,
+            longitude: point.flight_path.longitude.to_degrees(),
+            latitude: point.geodetic_latitude.to_degrees(),
+            altitude: point.geodetic_altitude,
+        }
+    }
+
+    /// In the order of every format here.
+    fn position(&self) -> [f64; 3] {
+        [self.longitude, self.latitude, self.altitude]
+    }
+}
+
+impl NamedPoint {
+    /// What there is to know of it, for people.
+    fn description(&self) -> String {
+        let Self { quantity, unit, .. } = self;
+        let [value, time, altitude] = [self.value, self.time, self.altitude].map(rounded);
+        format!("{} {value} {unit}, {time} s after the start, at an altitude of {altitude} m", words(quantity))
+    }
+}
+
+/// A name of the API, for people.
+fn words(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// A number for people: five digits of it.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,105 @@
+//! KML 2.2 (OGC 07-147r2), with the `gx:Track` of Google's extension: a placemark for the track, one for every point.
+
+use std::io;
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, BytesText, Event};
+use serde_json::{Map, Value};
+
+use super::{NamedPoint, Track, Vertex};
+
+type Xml = Writer<Vec<u8>>;
+
+impl Track<'_> {
+    /// A document: with an epoch a track with an instant a vertex, without one a line; then the points.
+    ///
+    /// Altitudes are absolute: above the sea, as KML has it, where the case's are above the ellipsoid. Characters that XML cannot hold
+    /// come as U+FFFD.
+    ///
+    /// # Errors
+    /// Never: memory can always be written.
+    pub fn to_kml(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let mut xml = Writer::new(Vec::new());
+        self.write(&mut xml).map_err(serde_json::Error::io)?;
+        Ok(xml.into_inner())
+    }
+
+    fn write(&self, xml: &mut Xml) -> io::Result<()> {
+        xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+        let root = xml.create_element("kml").with_attributes([
+            ("xmlns", "http://www.opengis.net/kml/2.2"),
+            ("xmlns:gx", "http://www.google.com/kml/ext/2.2"),
+        ]);
+        root.write_inner_content(|xml| {
+            element(xml, "Document", |xml| {
+                text(xml, "name", self.name())?;
+                text(xml, "description", &self.notes())?;
+                element(xml, "Placemark", |xml| {
+                    text(xml, "name", self.name())?;
+                    if self.epoch.is_some() { self.track(xml) } else { line(xml, &self.vertices) }
+                })?;
+                self.points.iter().try_for_each(|point| placemark(xml, point))
+            })
+        })?;
+        Ok(())
+    }
+
+    fn track(&self, xml: &mut Xml) -> io::Result<()> {
+        element(xml, "gx:Track", |xml| {
+            text(xml, "altitudeMode", "absolute")?;
+            for instant in self.vertices.iter().filter_map(|vertex| self.utc(vertex.time)) {
+                text(xml, "when", &instant.to_string())?;
+            }
+            self.vertices.iter().try_for_each(|vertex| text(xml, "gx:coord", &coordinates(vertex, " ")))
+        })
+    }
+}
+
+fn line(xml: &mut Xml, vertices: &[Vertex]) -> io::Result<()> {
+    let vertices: Vec<_> = vertices.iter().map(|vertex| coordinates(vertex, ",")).collect();
+    geometry(xml, "LineString", &vertices.join(" "))
+}
+
+fn placemark(xml: &mut Xml, point: &NamedPoint) -> io::Result<()> {
+    let properties: Map<String, Value> = serde_json::from_value(serde_json::to_value(point)?)?;
+    element(xml, "Placemark", |xml| {
+        text(xml, "name", &point.name)?;
+        text(xml, "description", &point.description())?;
+        element(xml, "ExtendedData", |xml| {
+            for (name, value) in properties.iter().filter(|(name, _)| *name != "name") {
+                let data = xml.create_element("Data").with_attribute(("name", name.as_str()));
+                let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                data.write_inner_content(|xml| text(xml, "value", &value))?;
+            }
+            Ok(())
+        })?;
+        geometry(xml, "Point", &coordinates(&point.place, ","))
+    })
+}
+
+/// A line or a point, tied to the ground.
+fn geometry(xml: &mut Xml, kind: &str, coordinates: &str) -> io::Result<()> {
+    element(xml, kind, |xml| {
+        text(xml, "extrude", "1")?;
+        text(xml, "altitudeMode", "absolute")?;
+        text(xml, "coordinates", coordinates)
+    })
+}
+
+fn coordinates(vertex: &Vertex, separator: &str) -> String {
+    vertex.position().map(|coordinate| coordinate.to_string()).join(separator)
+}
+
+fn element(xml: &mut Xml, name: &str, inside: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<()> {
+    xml.create_element(name).write_inner_content(inside).map(drop)
+}
+
+fn text(xml: &mut Xml, name: &str, content: &str) -> io::Result<()> {
+    let content = content.replace(|character| !is_xml(character), "\u{fffd}");
+    xml.create_element(name).write_text_content(BytesText::new(&content)).map(drop)
+}
+
+/// Whether XML 1.0 can hold a character (section 2.2).
+fn is_xml(character: char) -> bool {
+    matches!(character, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..)
+}
