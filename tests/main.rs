@@ -21,4 +21,5 @@ mod reference;
 mod regimes;
 mod tables;
 mod tidy;
+mod validation;
 mod verification;

@@ -368,6 +368,11 @@ async fn answers_are_valid() {
 }
 
 #[tokio::test]
+async fn the_validation_is_valid() {
+    is_valid(&schema("Validation"), &Service::new().get("/validation").await.json(), "the validation");
+}
+
+#[tokio::test]
 async fn problem_documents_are_valid() {
     let service = Service::new();
     let schema = schema("Problem");
@@ -405,7 +410,7 @@ fn every_operation_and_response_has_a_description() {
         }
     }
     let given: Vec<_> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
-    for path in ["/simulate", "/analytic", "/convert", "/health/live", "/health/ready"] {
+    for path in ["/simulate", "/analytic", "/convert", "/validation", "/health/live", "/health/ready"] {
         assert!(given.contains(&path), "{path}");
     }
 }

@@ -24,7 +24,7 @@ const SERVICE: [&[&str]; 9] = [
     &["error", "telemetry"],
     &["compute", "format", "openapi"],
     &["answer", "state"],
-    &["extract"],
+    &["extract", "validation"],
     &["endpoints"],
     &["router"],
     &["serve"],

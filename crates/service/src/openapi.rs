@@ -66,14 +66,15 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         }
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
-        for (path, formats) in [
-            ("/simulate", json!(["json", "csv", "geojson", "kml", "czml"])),
-            ("/analytic", json!(["json", "csv"])),
-            ("/simulate/batch", json!(["ndjson"])),
-            ("/convert", json!(["json"])),
+        for (path, method, formats) in [
+            ("/simulate", "post", json!(["json", "csv", "geojson", "kml", "czml"])),
+            ("/analytic", "post", json!(["json", "csv"])),
+            ("/simulate/batch", "post", json!(["ndjson"])),
+            ("/convert", "post", json!(["json"])),
+            ("/validation", "get", json!(["json"])),
         ] {
-            if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
-                add_failures(operation);
+            if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut(method)) {
+                add_failures(operation, method);
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
             }
         }
@@ -278,8 +279,12 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
     }
 }
 
-fn add_failures(operation: &mut Value) {
+fn add_failures(operation: &mut Value, method: &str) {
     for (status, description) in FAILURES {
+        // A request without a body has no fault of one.
+        if method == "get" && ["408", "413", "415", "422"].contains(&status) {
+            continue;
+        }
         operation["responses"][status] = json!({
             "description": description,
             "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
