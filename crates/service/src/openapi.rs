@@ -184,6 +184,13 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             ("then", json!({"properties": {"reference_area": false}})),
             ("else", json!({"required": ["reference_area"]})),
         ],
+        "SimulateRequest" => {
+            vec![("dependentSchemas", json!({"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}))]
+        }
+        // The theories know neither, but an empty list is no event.
+        "AnalyticRequest" => {
+            vec![("allOf", json!([{"properties": {"heating": false, "events": {"maxItems": 0}}}]))]
+        }
         "Effect" => vec![(
             "dependentSchemas",
             json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
