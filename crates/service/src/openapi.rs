@@ -303,6 +303,8 @@ fn add_examples(paths: &mut Map<String, Value>) {
             "value": example(include_str!("../../../openapi/examples/target_2.json"))},
         "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
             "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
+        "deorbit": {"summary": "A capsule comes down from orbit: a burn, the heat of entry, parachutes",
+            "value": example(include_str!("../../../openapi/examples/deorbit.json"))},
         "impulse": {"summary": "IMPULSE: a missile's vehicle after burnout, from inertial vectors",
             "value": example(include_str!("../../../openapi/examples/impulse.json"))},
     });
