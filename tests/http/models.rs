@@ -4,13 +4,8 @@ use reentry_tests::service::Service;
 use serde_json::{Value, json};
 
 use super::refusal::{Steady, good_answer};
-use super::requests::{capsule, flight, models, with, with_all, without};
+use super::requests::{capsule, flight, model, with, with_all, without};
 use super::simulate::{COLUMNS, fly};
-
-/// A complete request with another model.
-fn model(name: &str) -> Value {
-    models().into_iter().find(|(of, _)| *of == name).unwrap().1
-}
 
 fn names(object: &Value) -> Vec<&str> {
     object.as_object().unwrap().keys().map(String::as_str).collect()
@@ -22,7 +17,7 @@ fn codes(answer: &Value) -> Vec<&str> {
 
 #[tokio::test]
 async fn the_answer_says_which_models_flew() {
-    for (name, model, kind) in [
+    for (name, part, kind) in [
         ("us76", "atmosphere", "us76"),
         ("vacuum", "atmosphere", "vacuum"),
         ("layers", "atmosphere", "layered_exponential"),
@@ -36,8 +31,8 @@ async fn the_answer_says_which_models_flew() {
         ("mach_table", "aerodynamics", "mach_table"),
         ("alpha_mach_table", "aerodynamics", "alpha_mach_table"),
     ] {
-        let answer = fly(&self::model(name)).await;
-        assert_eq!(answer["models"][model], kind, "{name}");
+        let answer = fly(&model(name)).await;
+        assert_eq!(answer["models"][part], kind, "{name}");
     }
 }
 

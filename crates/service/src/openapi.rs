@@ -185,6 +185,13 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             ("then", json!({"properties": {"reference_area": false}})),
             ("else", json!({"required": ["reference_area"]})),
         ],
+        "SimulateRequest" => {
+            vec![("dependentSchemas", json!({"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}))]
+        }
+        // The theories know neither, but an empty list is no event.
+        "AnalyticRequest" => {
+            vec![("allOf", json!([{"properties": {"heating": false, "events": {"maxItems": 0}}}]))]
+        }
         "Effect" => vec![(
             "dependentSchemas",
             json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
@@ -301,6 +308,8 @@ fn add_examples(paths: &mut Map<String, Value>) {
             "value": example(include_str!("../../../openapi/examples/target_2.json"))},
         "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
             "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
+        "deorbit": {"summary": "A capsule comes down from orbit: a burn, the heat of entry, parachutes",
+            "value": example(include_str!("../../../openapi/examples/deorbit.json"))},
         "impulse": {"summary": "IMPULSE: a missile's vehicle after burnout, from inertial vectors",
             "value": example(include_str!("../../../openapi/examples/impulse.json"))},
     });
