@@ -7,6 +7,7 @@ pub(crate) mod requests;
 
 mod broken_json;
 mod cross_field;
+mod event_faults;
 mod extras;
 mod faults;
 mod problems;
