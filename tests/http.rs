@@ -17,6 +17,8 @@ mod ranges;
 mod analytic;
 mod batch;
 mod convert;
+mod events;
+mod heating;
 mod models;
 mod nesc;
 mod output;
