@@ -7,6 +7,7 @@ pub(crate) mod requests;
 
 mod broken_json;
 mod cross_field;
+mod event_faults;
 mod extras;
 mod faults;
 mod problems;
@@ -16,6 +17,8 @@ mod ranges;
 mod analytic;
 mod batch;
 mod convert;
+mod events;
+mod heating;
 mod models;
 mod nesc;
 mod output;

@@ -15,7 +15,7 @@ use tokio::task::yield_now;
 
 use super::problems::{endless, free_again, orbiting};
 use super::refusal::{Steady, good_answer, problem};
-use super::requests::{capsule, flight, with, without};
+use super::requests::{capsule, flight, model, with, without};
 
 const PATH: &str = "/simulate/batch";
 const LONG: Duration = Duration::from_mins(5);
@@ -45,12 +45,20 @@ fn reproducible(mut answer: Value) -> Value {
 #[tokio::test]
 async fn every_case_has_the_answer_of_simulate_on_its_line() {
     let service = Service::new();
-    let good = [capsule(), with(&flight("geodetic"), "/echo", true), with(&flight("eci"), "/name", "two\nlines")];
+    let good = [
+        capsule(),
+        with(&flight("geodetic"), "/echo", true),
+        with(&flight("eci"), "/name", "two\nlines"),
+        model("events"),
+        model("heating"),
+    ];
     let spherical = json!({"formulation": "spherical"});
     let singular = with(&with(&capsule(), "/solver", spherical), "/initial_state/speed", 0);
     let bad = [
         with(&capsule(), "/vehicle/mass", -13),
         without(&capsule(), "/vehicle"),
+        with(&model("events"), "/events/0/then/thrust", "on"),
+        without(&model("heating"), "/vehicle/nose_radius"),
         with(&capsule(), "/output", json!({"count": 1_000_000})),
         singular,
         json!(5),

@@ -5,15 +5,7 @@ use serde_json::{Value, json};
 
 use super::refusal::{Steady, good_answer};
 use super::requests::{capsule, flight, model, with, with_all, without};
-use super::simulate::{COLUMNS, fly};
-
-fn names(object: &Value) -> Vec<&str> {
-    object.as_object().unwrap().keys().map(String::as_str).collect()
-}
-
-fn codes(answer: &Value) -> Vec<&str> {
-    answer["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect()
-}
+use super::simulate::{COLUMNS, codes, fly, names};
 
 #[tokio::test]
 async fn the_answer_says_which_models_flew() {

@@ -15,7 +15,7 @@ use reentry_tests::service::Service;
 use serde_json::{Value, json};
 
 use super::refusal::{Steady, problem};
-use super::requests::{capsule, flight, with, with_all};
+use super::requests::{capsule, event, flight, with, with_all};
 
 fn post(path: &str, media_type: &str, body: impl Into<Body>) -> Request<Body> {
     let request = Request::builder().method(Method::POST).uri(path).header(header::CONTENT_TYPE, media_type);
@@ -221,6 +221,29 @@ async fn motion_too_fast_to_follow_gets_its_problem() {
     assert_eq!(problem["type"], "/problems/step-size", "{problem}");
     let begin = "the flight cannot be finished: the motion changes too fast to be followed at t = ";
     assert!(problem["detail"].as_str().unwrap().starts_with(begin), "{problem}");
+}
+
+#[tokio::test]
+async fn thrust_that_burns_the_whole_vehicle_gets_its_problem() {
+    let steady = Steady::new().await;
+    let thrust = json!({"along": "velocity", "value": 98_066.5, "specific_impulse": 100});
+    for thrust in [thrust.clone(), with(&thrust, "/propellant", 6000)] {
+        let request =
+            with(&capsule(), "/events", json!([event("time", "rises_through", 2.0, &json!({"thrust": thrust}))]));
+        let problem = steady.refused(post_json("/simulate", &request)).await;
+        // 100 kg a second of 5500 kg.
+        let expected = json!({
+            "type": "/problems/no-mass-left", "title": "No mass left", "status": 422, "detail": problem["detail"],
+            "errors": [{"pointer": "/events",
+                "detail": "switch the thrust off by an event, or say how much propellant there is"}],
+        });
+        assert_eq!(problem, expected);
+        let detail = problem["detail"].as_str().unwrap();
+        let begin = "the flight cannot be finished: by t = ";
+        let end = " s the thrust has burnt all the mass that there was";
+        let gone: f64 = detail.strip_prefix(begin).and_then(|rest| rest.strip_suffix(end)).unwrap().parse().unwrap();
+        assert!(gone > 56.0 && gone <= 57.0, "{detail}");
+    }
 }
 
 #[tokio::test]

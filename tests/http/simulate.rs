@@ -54,8 +54,14 @@ pub(crate) async fn fly(case: &Value) -> Value {
     good_answer(&Service::new(), "/simulate", case).await
 }
 
-fn names(object: &Value) -> Vec<&str> {
+/// The names of an object's fields, in order.
+pub(crate) fn names(object: &Value) -> Vec<&str> {
     object.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+/// The codes of an answer's warnings, in order.
+pub(crate) fn codes(answer: &Value) -> Vec<&str> {
+    answer["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect()
 }
 
 /// An answer but for the one thing that differs from run to run.

@@ -198,6 +198,22 @@ def test_a_list_as_csv_is_one_table_with_the_number_of_the_case(file):
     assert rows[1:] == [[case, *row] for case in "13" for row in single[1:]]
 
 
+def test_a_list_of_cases_with_events_has_their_columns_and_a_case_without_them_fails_alone(file):
+    eventful = json.loads((EXAMPLES / "deorbit.json").read_text())
+    lines = [json.loads(line) for line in run("simulate", file([eventful, CASE])).stdout.splitlines()]
+    assert [event["name"] for event in lines[0]["events"]] == [event["name"] for event in eventful["events"]]
+    assert "events" not in lines[1]
+    result = run("simulate", path := file([eventful, CASE, eventful]), "--format", "csv")
+    assert result.returncode == 1
+    assert result.stderr.startswith(f'reentry: {path}: case 1 "TARGET case 1": Not a valid case: the request has 1 fault\n  /output/columns: ')
+    rows = list(csv.reader(io.StringIO(result.stdout)))
+    assert rows[0][0] == "case"
+    assert rows[0][-3:] == ["heat_load", "wall_temperature", "mass"]
+    masses = [float(row[-1]) for row in rows[1:] if row[0] == "2"]
+    assert {row[0] for row in rows[1:]} == {"0", "2"}
+    assert (masses[0], masses[-1]) == (7000.0, 2700.0)
+
+
 @pytest.mark.parametrize("command", [["simulate"], ["simulate", "-f", "csv"], ["validate"], ["openapi"], ["completions", "bash"]])
 def test_a_reader_that_has_enough_is_no_failure(file, command):
     # More than a pipe holds.

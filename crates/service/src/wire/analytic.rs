@@ -128,7 +128,8 @@ impl AnalyticJob {
             Err(faults) => {
                 let (vehicle, atmosphere) = (request.vehicle.to_core(), request.atmosphere.to_core());
                 let theory = solution.to_core().vehicle_faults(&vehicle, &atmosphere, request.density_factor);
-                (Err(faults), Err(theory))
+                let events = (!request.events.is_empty()).then_some(TheoryFault::Events);
+                (Err(faults), Err(theory.into_iter().chain(events).collect()))
             }
         };
         match (scenario, theory) {

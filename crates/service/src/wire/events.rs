@@ -75,7 +75,7 @@ pub struct Effect {
     /// kg. A ballistic coefficient changes with it: the drag area stays.
     #[schema(required = false, value_type = f64, exclusive_minimum = 0)]
     pub mass: Option<f64>,
-    /// m². Not beside ballistic aerodynamics.
+    /// m². Not beside ballistic aerodynamics, nor where the vehicle has them and no event gives others.
     #[schema(required = false, value_type = f64, minimum = 0)]
     pub reference_area: Option<f64>,
     /// Lift and drag.
@@ -172,14 +172,28 @@ impl Event {
         self.then.mass.is_some() || self.then.thrust.is_some()
     }
 
-    /// Coefficients that refer to an area which nothing tells.
-    pub(super) fn missing_areas(events: &[Self], vehicle: &Vehicle) -> Vec<Fault> {
-        let refers = |aerodynamics: &Aerodynamics| !matches!(aerodynamics, Aerodynamics::Ballistic(_));
-        let lacks =
-            |event: &Self| event.then.reference_area.is_none() && event.then.aerodynamics.as_ref().is_some_and(refers);
-        let lacking = events.iter().enumerate().filter(|(_, event)| vehicle.reference_area.is_none() && lacks(event));
-        let detail = "is required: the ballistic vehicle has no area to which these coefficients could refer";
-        lacking.map(|(index, _)| Fault::new(format!("/events/{index}/then/reference_area"), detail)).collect()
+    /// Of a vehicle without an area: coefficients that would refer to one, and areas to which no coefficient ever refers.
+    pub(super) fn area_faults(events: &[Self], vehicle: &Vehicle) -> Vec<Fault> {
+        if vehicle.reference_area.is_some() {
+            return Vec::new();
+        }
+        let by_area = |Self { then, .. }: &Self| {
+            then.aerodynamics.as_ref().is_some_and(|aerodynamics| !matches!(aerodynamics, Aerodynamics::Ballistic(_)))
+        };
+        let ever = events.iter().any(by_area);
+        let fault = |(index, event): (usize, &Self)| {
+            let detail = match event.then.reference_area {
+                None if by_area(event) => {
+                    "is required: the ballistic vehicle has no area to which these coefficients could refer"
+                }
+                Some(_) if !ever => {
+                    "must be left out: the vehicle is ballistic, and no event gives it coefficients of an area"
+                }
+                _ => return None,
+            };
+            Some(Fault::new(format!("/events/{index}/then/reference_area"), detail))
+        };
+        events.iter().enumerate().filter_map(fault).collect()
     }
 }
 

@@ -280,14 +280,13 @@ impl SimulateRequest {
         let planet = self.planet.core;
         let stop = self.stop.to_core(self.angle_unit);
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &planet);
-        let mut faults: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
-        faults.extend(Event::missing_areas(&self.events, &self.vehicle));
+        let areas = Event::area_faults(&self.events, &self.vehicle);
+        let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
         let initial_state = match initial_state {
-            Ok((state, _)) if faults.is_empty() => state,
-            Ok(_) => return Err(faults),
-            Err(own) => {
-                faults.extend(own);
-                return Err(faults);
+            Ok((state, _)) if of_planet.is_empty() => state,
+            other => {
+                let of_state = other.err().unwrap_or_default();
+                return Err(of_planet.into_iter().chain(areas).chain(of_state).collect());
             }
         };
         let case = Case {
@@ -303,7 +302,11 @@ impl SimulateRequest {
             stop,
             solver: self.solver.to_core(),
         };
-        Scenario::new(case).map_err(|error| error.0.iter().map(fault).collect())
+        match Scenario::new(case) {
+            Ok(scenario) if areas.is_empty() => Ok(scenario),
+            Ok(_) => Err(areas),
+            Err(error) => Err(error.0.iter().map(fault).chain(areas).collect()),
+        }
     }
 }
 

@@ -32,7 +32,9 @@ impl Warning {
     pub fn of(request: &SimulateRequest, flight: &Trajectory, extras: &Extras) -> Vec<Self> {
         let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
-        let by_angle_of_attack = matches!(request.vehicle.aerodynamics, Aerodynamics::AlphaMachTable(_));
+        let later = request.events.iter().filter_map(|event| event.then.aerodynamics.as_ref());
+        let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
+        let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
         if request.control.angle_of_attack.is_given() && !by_angle_of_attack {
             let detail =
                 "control.angle_of_attack changes nothing: only the coefficients of an alpha_mach_table depend on it";
