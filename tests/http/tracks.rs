@@ -95,8 +95,8 @@ async fn the_places_are_those_of_the_rows() {
         let track = &map["features"][0];
         assert_eq!(track["geometry"]["type"], "LineString");
         assert_eq!(positions(&track["geometry"]["coordinates"]), rows);
-        assert_eq!(track["properties"]["time"], answer["trajectory"]["time"]);
-        assert_eq!(track["properties"].get("utc"), answer["trajectory"].get("utc"));
+        assert_eq!(track["properties"]["times"], answer["trajectory"]["time"]);
+        assert_eq!(track["properties"].get("times_utc"), answer["trajectory"].get("utc"));
 
         let xml = drawn(&case, "kml").await;
         let (points, separator) = match case.get("epoch") {
@@ -161,6 +161,10 @@ async fn the_end_and_the_peaks_are_marked() {
         assert!(placemarks[index].contains(&format!("<Data name=\"value\"><value>{}<", mark["properties"]["value"])));
         assert_eq!(elements(placemarks[index], "description")[0], packet["description"]);
     }
+    let description = |index: usize| packets[index]["description"].as_str().unwrap();
+    assert_eq!(description(4), "load factor 8.9873 g, 234.0 s after the start, at an altitude of 38465 m");
+    // A Mach number has no unit.
+    assert!(description(7).starts_with("mach ") && !description(7).contains(" ,"), "{}", description(7));
 }
 
 #[tokio::test]
@@ -216,10 +220,10 @@ async fn a_line_over_the_antimeridian_is_cut_there() {
         check::near("altitude", leaving[2], from[2] + part * (to[2] - from[2]), 1e-8);
         // The times have the shape of the coordinates.
         for (part, coordinates) in parts.iter().enumerate() {
-            let times = numbers(&track["properties"]["time"][part]);
+            let times = numbers(&track["properties"]["times"][part]);
             assert_eq!(times.len(), coordinates.len());
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
-            assert_eq!(track["properties"]["utc"][part].as_array().unwrap().len(), times.len());
+            assert_eq!(track["properties"]["times_utc"][part].as_array().unwrap().len(), times.len());
         }
     }
 }
@@ -301,14 +305,9 @@ async fn an_epoch_dates_every_vertex() {
     let utc = fly(&dated).await["trajectory"]["utc"].clone();
 
     let map = geojson(&dated).await;
-    assert_eq!(map["features"][0]["properties"]["utc"], utc);
-    assert!(
-        map["features"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .all(|feature| feature["properties"]["utc"].is_array() || feature["properties"]["utc"].is_string())
-    );
+    assert_eq!(map["features"][0]["properties"]["times_utc"], utc);
+    let marks = &map["features"].as_array().unwrap()[1..];
+    assert!(marks.iter().all(|mark| mark["properties"]["utc"].is_string()));
     assert!(!geojson(&plain).await.to_string().contains("utc"));
 
     let xml = drawn(&dated, "kml").await;
@@ -366,7 +365,7 @@ async fn a_flight_that_ends_at_its_start_is_a_point() {
         }
         let map = geojson(&case).await;
         assert_eq!(map["features"][0]["geometry"], json!({"type": "MultiLineString", "coordinates": []}));
-        assert_eq!(map["features"][0]["properties"]["time"], json!([]));
+        assert_eq!(map["features"][0]["properties"]["times"], json!([]));
         assert_eq!(map["features"].as_array().unwrap().len(), 6);
         assert_eq!(numbers(&czml(&case).await[1]["position"]["cartographicDegrees"]).len(), 4);
         assert_eq!(elements(&drawn(&case, "kml").await, "Placemark").len(), 6);

@@ -25,10 +25,10 @@ impl Track<'_> {
             "termination": self.answer.termination,
             "models": self.answer.models,
             "warnings": self.answer.warnings,
-            "time": in_shape(&parts, |vertex| json!(vertex.time)),
+            "times": in_shape(&parts, |vertex| json!(vertex.time)),
         });
         if self.epoch.is_some() {
-            properties["utc"] = in_shape(&parts, |vertex| json!(self.utc(vertex.time)));
+            properties["times_utc"] = in_shape(&parts, |vertex| json!(self.utc(vertex.time)));
         }
         let lines = parts.iter().map(|part| part.iter().map(Vertex::position));
         let geometry = match &parts[..] {
