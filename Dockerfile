@@ -1,7 +1,8 @@
 # syntax=docker/dockerfile:1
 FROM rust:1.95-bookworm AS build
 WORKDIR /src
-# `tests` is a member of the workspace, which cargo reads as a whole; the service holds the examples of its document.
+# `tests` is a member of the workspace, which cargo reads as a whole, and has the reference cases, which the service holds, as it does
+# the examples of its document.
 COPY Cargo.toml Cargo.lock ./
 COPY crates crates
 COPY tests tests

@@ -3,7 +3,7 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 
-.PHONY: help run build test check openapi validation theory bench load
+.PHONY: help run build test check openapi validation air theory bench load
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -32,8 +32,11 @@ openapi: ## Write openapi/openapi.json anew
 	cargo run --quiet --locked --bin reentry -- openapi > $(TARGET)/openapi.json
 	mv $(TARGET)/openapi.json openapi/openapi.json
 
-validation: ## Print how the results compare with published ones
-	cargo run --quiet --release --locked --package reentry-tests --example validation
+validation: build ## Print how the results compare with published ones, as the README has it
+	$(TARGET)/release/reentry validate --format markdown
+
+air: ## Print what standard air makes of the thesis's cases
+	cargo run --quiet --locked --package reentry-tests --example standard_air
 
 bench: ## Measure what flights and rows cost, beside another integrator
 	cargo bench --locked --package reentry-tests

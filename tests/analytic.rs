@@ -116,7 +116,8 @@ fn theory_and_simulation_differ_as_much_as_they_should() {
 
 /// A state whose density has the given η, for a vehicle of this case; all else is of no account to the theories but for Loh's.
 fn at(case: &Case, eta: f64, speed: f64) -> FlightPoint {
-    let mut point = fly(&Case { stop: Stop { altitude: 0.0, time: 1e-3 }, ..case.clone() }).initial();
+    let mut point =
+        fly(&Case { stop: Stop { altitude: 0.0, time: 1e-3, ..Stop::default() }, ..case.clone() }).initial();
     let Aerodynamics::Constant { drag_coefficient, .. } = case.vehicle.aerodynamics else { panic!("{case:?}") };
     let beta = 1.0 / case.atmosphere.scale_height();
     // (76) η = ρSC_D / (2mβ)
@@ -421,7 +422,7 @@ proptest! {
 
     #[test]
     fn a_theory_gives_numbers_within_its_stretch_and_none_outside(case in random_entry(), light in -6.0..0.0) {
-        let Vehicle { mass, reference_area, ref aerodynamics } = case.vehicle;
+        let Vehicle { mass, reference_area, ref aerodynamics, .. } = case.vehicle;
         for solution in ALL {
             let Aerodynamics::Constant { mut lift_coefficient, drag_coefficient } = *aerodynamics else {
                 panic!("{aerodynamics:?}")

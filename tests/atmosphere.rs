@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use reentry::atmosphere::AtmosphereSample;
 use reentry::atmosphere::us76::{self, BOUNDARIES, density, density_in, stretch};
 use reentry::scalar::{Lanes, Scalar};
-use reentry_tests::cases::read_csv;
+use reentry_service::validation::cases::{US76, US76_GEOPOTENTIAL, rows};
 
 use crate::check::{near, relative};
 use crate::flights::config;
@@ -61,28 +61,28 @@ fn as_printed(what: &str, actual: f64, printed: &str, units: f64, share: f64) {
 
 #[test]
 fn the_published_tables_by_geometric_altitude() {
-    for row in read_csv("atmosphere/us76.csv") {
+    for row in rows(US76) {
         let altitude = 1000.0 * row[0].parse::<f64>().unwrap();
         let air = sample(altitude);
         // The report's sums are not the integrals to the last digit, and the parts are joined at 86 km; see the file.
         let share = if altitude > 86e3 { 6e-5 } else { 0.0 };
         let weight = air.density / air.pressure * 8314.32 * air.temperature;
-        as_printed(&format!("temperature at {altitude} m"), air.temperature, &row[1], ROUNDED, 0.0);
-        as_printed(&format!("pressure at {altitude} m"), air.pressure, &row[2], CUT, share);
-        as_printed(&format!("density at {altitude} m"), air.density, &row[3], ROUNDED, share);
-        as_printed(&format!("speed of sound at {altitude} m"), air.speed_of_sound, &row[4], ROUNDED, 0.0);
-        as_printed(&format!("molecular weight at {altitude} m"), weight, &row[5], ROUNDED, share);
+        as_printed(&format!("temperature at {altitude} m"), air.temperature, row[1], ROUNDED, 0.0);
+        as_printed(&format!("pressure at {altitude} m"), air.pressure, row[2], CUT, share);
+        as_printed(&format!("density at {altitude} m"), air.density, row[3], ROUNDED, share);
+        as_printed(&format!("speed of sound at {altitude} m"), air.speed_of_sound, row[4], ROUNDED, 0.0);
+        as_printed(&format!("molecular weight at {altitude} m"), weight, row[5], ROUNDED, share);
     }
 }
 
 #[test]
 fn the_published_tables_by_geopotential_altitude() {
-    for row in read_csv("atmosphere/us76_geopotential.csv") {
+    for row in rows(US76_GEOPOTENTIAL) {
         let altitude: f64 = row[0].parse().unwrap();
         let air = sample(RADIUS * altitude / (RADIUS - altitude));
-        as_printed(&format!("temperature at {altitude} m"), air.temperature, &row[1], ROUNDED, 0.0);
-        as_printed(&format!("pressure at {altitude} m"), air.pressure, &row[2], CUT, 0.0);
-        as_printed(&format!("density at {altitude} m"), air.density, &row[3], ROUNDED, 0.0);
+        as_printed(&format!("temperature at {altitude} m"), air.temperature, row[1], ROUNDED, 0.0);
+        as_printed(&format!("pressure at {altitude} m"), air.pressure, row[2], CUT, 0.0);
+        as_printed(&format!("density at {altitude} m"), air.density, row[3], ROUNDED, 0.0);
     }
 }
 

@@ -1,5 +1,6 @@
 //! `cargo bench --bench flights`: what a flight costs, in counts and in time, beside the DOP853 of `ode_solvers` with the same
-//! derivative; what the models cost that the thesis does not have, and how many steps their changes of formula reject; and what lanes,
+//! derivative; what the models cost that the thesis does not have, and how many steps their changes of formula reject; what heating and
+//! events cost; and what lanes,
 //! sensitivities and verification cost in plain flights.
 //!
 //! Machines are noisy: in every comparison the contenders take turns, and a time is the median of many rounds. Counts are exact.
@@ -35,6 +36,7 @@ fn main() {
     right_hand_sides();
     changes_of_formula();
     layers();
+    heating_and_events();
     number_types();
 }
 
@@ -70,8 +72,10 @@ fn beside_ode_solvers() {
         };
         let tolerances = [1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
         // The ground is out of the way, so that both fly to the same time; its crossing is looked for all the same.
-        let to_the_time =
-            |tolerance| Case { stop: Stop { altitude: -1e5, time: exact.time }, ..with_tolerance(tolerance) };
+        let to_the_time = |tolerance| Case {
+            stop: Stop { altitude: -1e5, time: exact.time, ..Stop::default() },
+            ..with_tolerance(tolerance)
+        };
         let ours = tolerances.map(|tolerance| Scenario::new(to_the_time(tolerance)).unwrap());
         let peer_at = |tolerance: f64| peer(&case, exact.time, tolerance);
         let theirs = tolerances.map(|tolerance| move || peer_at(tolerance));
@@ -120,7 +124,7 @@ fn right_hand_sides() {
                 [&mut timed(|| {
                     // Each waits for the one before, as the stages of a step do.
                     states.iter().fold(0.0, |before, (time, state)| {
-                        let state = std::array::from_fn(|i| state[i] + before);
+                        let state: [f64; 6] = std::array::from_fn(|i| state[i] + before);
                         motion.derivative(*time, &state)[5] * 1e-30
                     })
                 })],
@@ -259,6 +263,77 @@ fn models() -> Vec<(&'static str, Case)> {
     cases
 }
 
+/// What heating costs, and a dozen events, those that wait all the way and those that happen, in flights without them.
+fn heating_and_events() {
+    println!("\n| flight | with | right-hand sides | steps | rejected | time | over the flight without |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let lift = json!({"type": "constant", "lift_coefficient": 0.4, "drag_coefficient": 1.25});
+    let lunar_return = json!({
+        "atmosphere": {"type": "us76"},
+        "vehicle": {"mass": 5500, "reference_area": 12, "aerodynamics": lift},
+        "initial_state": {"type": "planet_relative", "altitude": 121_920, "longitude": 0, "geocentric_latitude": -0.4,
+            "speed": 10_600, "flight_path_angle": -0.117, "heading": 0.35},
+        "control": {"bank_angle": 1.05},
+    });
+    for (name, request) in [("TARGET case 2", thesis_request("target_2")), ("a capsule from the Moon", lunar_return)] {
+        let with = |heating: [&str; 2], events: &[Value]| {
+            let mut request = request.clone();
+            request["vehicle"]["nose_radius"] = json!(1.0);
+            if !heating[0].is_empty() {
+                request["heating"] = json!({"convective": heating[0], "radiative": heating[1]});
+            }
+            request["events"] = json!(events);
+            job(&request).scenario
+        };
+        let [waiting, happening] = [waiting_events(), happening_events()];
+        let [none, sutton, both] = [["", ""], ["sutton_graves", "none"], ["sutton_graves", "tauber_sutton"]];
+        let variants = [
+            ("nothing", with(none, &[])),
+            ("`sutton_graves`", with(sutton, &[])),
+            ("`detra_kemp_riddell`", with(["detra_kemp_riddell", "none"], &[])),
+            ("`sutton_graves`, `tauber_sutton`", with(both, &[])),
+            ("twelve events that wait", with(none, &waiting)),
+            ("`sutton_graves`, twelve events that wait", with(sutton, &waiting)),
+            ("`sutton_graves`, `tauber_sutton`, twelve events that wait", with(both, &waiting)),
+            ("twelve events that happen", with(none, &happening)),
+        ];
+        let mut flights = variants.each_ref().map(|(_, scenario)| timed(|| simulate(black_box(scenario), &NEVER)));
+        let times = micros(flights.each_mut().map(|flight| flight as &mut dyn FnMut()));
+        for ((what, scenario), time) in variants.iter().zip(times) {
+            let statistics = simulate(scenario, &NEVER).unwrap().statistics();
+            let (evaluations, steps, rejected) = (statistics.evaluations, statistics.steps, statistics.rejected_steps);
+            let ratio = time / times[0];
+            println!("| {name} | {what} | {evaluations} | {steps} | {rejected} | {time:.1} µs | {ratio:.2} |");
+        }
+    }
+}
+
+/// Twelve events over six quantities, none of which happens on the way from the atmosphere to the ground.
+fn waiting_events() -> Vec<Value> {
+    [
+        ("altitude", 4e5, -1e3),
+        ("speed", 2e4, 1.0),
+        ("dynamic_pressure", 1e8, 0.0),
+        ("load_factor", 1e4, 0.0),
+        ("flight_path_angle", 1.5, -1.57),
+    ]
+    .into_iter()
+    .flat_map(|(quantity, above, below)| {
+        [event(quantity, "rises_through", above), event(quantity, "falls_through", below)]
+    })
+    .chain([event("time", "rises_through", 9000.0), event("time", "rises_through", 9999.0)])
+    .collect()
+}
+
+/// Twelve events on the way down.
+fn happening_events() -> Vec<Value> {
+    (1..=12).map(|place| event("altitude", "falls_through", 9e3 * f64::from(place))).collect()
+}
+
+fn event(quantity: &str, way: &str, value: f64) -> Value {
+    json!({"when": {"quantity": quantity, (way): value}})
+}
+
 /// TARGET case 2: lanes by the flight, derivatives and verification in plain flights.
 fn number_types() {
     let case = scenario("target_2").case().clone();
@@ -292,8 +367,13 @@ fn number_types() {
 }
 
 fn scenario(name: &str) -> Scenario {
+    job(&thesis_request(name)).scenario
+}
+
+/// A case of the thesis with the constants of WGS 84.
+fn thesis_request(name: &str) -> Value {
     let case = thesis_cases().into_iter().find(|case| case.name == name && case.model == "earth_wgs84").unwrap();
-    job(&case.request).scenario
+    case.request
 }
 
 fn job(request: &Value) -> Job {

@@ -30,6 +30,8 @@ pub(crate) fn target_2() -> Case {
         wind: Wind::Still,
         vehicle: vehicle(700.0, 0.216_419, 0.2, 0.2),
         control: Control::banked(0.8),
+        heating: None,
+        events: Vec::new(),
         initial_state: initial_state.to_planet_fixed(),
         stop: Stop::default(),
         solver: Solver::default(),
@@ -37,7 +39,8 @@ pub(crate) fn target_2() -> Case {
 }
 
 pub(crate) fn vehicle(mass: f64, reference_area: f64, lift_coefficient: f64, drag_coefficient: f64) -> Vehicle {
-    Vehicle { mass, reference_area, aerodynamics: Aerodynamics::Constant { lift_coefficient, drag_coefficient } }
+    let aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient };
+    Vehicle { mass, reference_area, aerodynamics, nose_radius: None }
 }
 
 /// The case without air.
@@ -85,7 +88,7 @@ pub(crate) fn random_entry() -> impl Strategy<Value = Case> {
             vehicle: vehicle(mass, area, lift, drag),
             control: Control::banked(bank_angle),
             initial_state: state.to_planet_fixed(),
-            stop: Stop { altitude: 0.0, time: 1000.0 },
+            stop: Stop { altitude: 0.0, time: 1000.0, ..Stop::default() },
             ..target_2()
         }
     })

@@ -252,7 +252,7 @@ fn steps_followed_in_dual_numbers_end_at_the_same_digits_and_with_the_right_slop
     let steps = fly(PERIAPSIS[3], 1e-10);
     let [x, y, vx, vy] = PERIAPSIS;
     let start = [x.into(), y.into(), vx.into(), Dual64::new(vy, 1.0)];
-    let end = steps.iter().fold(start, |state, step| follow(&Kepler, &state, step));
+    let end = steps.iter().fold(start, |state, step| follow(&Kepler, &state, step.start_time, step.length()));
     let last = |steps: Vec<Step<4>>| steps.last().unwrap().end;
     assert_eq!(end.map(|x| x.re.to_bits()), last(steps).map(f64::to_bits));
     let (above, below) = (last(fly(vy + 1e-5, 1e-13)), last(fly(vy - 1e-5, 1e-13)));

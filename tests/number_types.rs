@@ -5,13 +5,16 @@ use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 use reentry::control::{Against, Command, Interpolation, Schedule};
+use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use reentry::heating::{Convective, Heating, Radiative};
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
+use reentry::propulsion::{Axis, Impulse, Thrust};
 use reentry::scalar::{Lanes, Scalar};
 use reentry::sensitivity::{self, Gradient, Sensitivities};
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::Termination;
-use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Scenario, Stop, Trajectory, simulate};
+use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Scenario, Stop, Trajectory, Vehicle, simulate};
 
 use crate::check::near;
 use crate::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
@@ -124,7 +127,7 @@ fn flying_allocates_nothing_and_recording_little() {
         let flown = allocation_counter::measure(|| assert!(arrival(&scenario, &interrupt).is_ok()));
         assert_eq!(flown.count_total, 0);
         let recorded = allocation_counter::measure(|| assert!(simulate(&scenario, &interrupt).is_ok()));
-        assert_eq!(recorded.count_total, 1, "the list of steps, with room for 64");
+        assert_eq!(recorded.count_total, 2, "the list of steps, with room for 64, and that of the phases");
     }
 }
 
@@ -256,6 +259,62 @@ fn sensitivities_hold_across_changes_of_formula() {
     ] {
         agrees_with_differences(what, &Case { control, ..target_2() });
     }
+}
+
+/// What happens comes sooner or later as the numbers vary, and so do the end of a burn and a condition that ends the flight.
+#[test]
+fn sensitivities_hold_across_events() {
+    let when = |quantity, value| Condition { quantity, value, direction: Direction::Falling };
+    let event = |when, then| vec![Event { when, then }];
+    let aerodynamics = Some(Aerodynamics::Constant { lift_coefficient: 0.1, drag_coefficient: 0.9 });
+    let opens = Effect { mass: Some(500.0), reference_area: Some(0.5), aerodynamics, ..Effect::default() };
+    let lighter = Effect { mass: Some(600.0), ..Effect::default() };
+    let pushed = |along| Effect { impulse: Some(Impulse { along, speed_change: -150.0 }), ..Effect::default() };
+    let burns = |along, propellant| {
+        let thrust = Thrust { along, force: -9000.0, specific_impulse: 250.0, propellant };
+        Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
+    };
+    let off = Effect { engine: Some(Engine::Off), ..Effect::default() };
+    let altitude = |value| when(Quantity::Altitude, value);
+    for (what, events) in [
+        (
+            "a vehicle that opens by dynamic pressure",
+            event(Condition { direction: Direction::Rising, ..when(Quantity::DynamicPressure, 2e4) }, opens),
+        ),
+        (
+            "a mass by load factor",
+            event(Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 0.8) }, lighter.clone()),
+        ),
+        (
+            "an impulse by speed",
+            event(Condition { direction: Direction::Rising, ..when(Quantity::Speed, 3250.0) }, pushed(Axis::Velocity)),
+        ),
+        ("an impulse across", event(altitude(40e3), pushed(Axis::Normal))),
+        ("an impulse by the angle", event(when(Quantity::FlightPathAngle, -0.6), pushed(Axis::Radial))),
+        ("a burn to its end", event(altitude(60e3), burns(Axis::Velocity, Some(80.0)))),
+        (
+            "a burn by the time",
+            vec![
+                Event {
+                    when: Condition { direction: Direction::Rising, ..when(Quantity::Time, 20.0) },
+                    then: burns(Axis::Radial, None),
+                },
+                Event { when: altitude(30e3), then: lighter },
+                Event { when: altitude(20e3), then: off },
+            ],
+        ),
+    ] {
+        agrees_with_differences(what, &Case { events, ..target_2() });
+    }
+    let stopped = |when| Case { stop: Stop { when: vec![when], ..Stop::default() }, ..target_2() };
+    agrees_with_differences("stopped by speed", &stopped(when(Quantity::Speed, 2000.0)));
+    agrees_with_differences(
+        "stopped by load",
+        &stopped(Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 2.0) }),
+    );
+    let heated = Vehicle { nose_radius: Some(0.1), ..target_2().vehicle };
+    let heating = Heating { convective: Convective::SuttonGraves, radiative: Radiative::None, emissivity: 0.9 };
+    agrees_with_differences("heated", &Case { vehicle: heated, heating: Some(heating), ..target_2() });
 }
 
 /// In a vacuum straight up and down: t = 2v/g and the rest by hand, and the slope by a density that is zero.

@@ -13,7 +13,9 @@ use reentry_tests::service::Service;
 use serde_json::{Value, json};
 
 use crate::http::fields::{Kind, Need, fields};
-use crate::http::requests::{ALTERNATIVES, KINDS, conversion, flight, models, with, with_all, without};
+use crate::http::requests::{
+    ALTERNATIVES, KINDS, condition, conversion, event, flight, model, models, with, with_all, without,
+};
 
 /// A validator of one of the document's schemas; OpenAPI 3.1 speaks JSON Schema 2020-12.
 fn schema(name: &str) -> Validator {
@@ -226,8 +228,7 @@ async fn schema_and_service_refuse_the_same_numbers() {
         ("lift_coefficient", json!([])),
         ("angle_of_attack", json!([0, 361])),
     ] {
-        let (_, table) = models().into_iter().find(|(name, _)| *name == "alpha_mach_table").unwrap();
-        let request = with(&table, &format!("/vehicle/aerodynamics/{name}"), value.clone());
+        let request = with(&model("alpha_mach_table"), &format!("/vehicle/aerodynamics/{name}"), value.clone());
         agreement.refused("/simulate", &request, &format!("{value} as {name}")).await;
     }
     for (name, value) in [
@@ -245,6 +246,37 @@ async fn schema_and_service_refuse_the_same_numbers() {
     let fast = with(&conversion("ecef"), "/state/velocity", json!([1e6_f64.next_up(), 0, 0]));
     agreement.refused("/convert", &fast, "a component of the velocity out of its range").await;
     agreement.holds(100);
+}
+
+#[tokio::test]
+async fn schema_and_service_refuse_the_same_events_and_heating() {
+    let mut agreement = Agreement::new();
+    let event = |then: Value| json!([event("time", "rises_through", 1.0, &then)]);
+    let ballistic = json!({"type": "ballistic", "ballistic_coefficient": 100});
+    let condition = condition("time", "rises_through", 1.0);
+    for (pointer, value) in [
+        ("/events", json!(vec![event(json!({}))[0].clone(); 1001])),
+        ("/events", event(json!({"reference_area": 1, "aerodynamics": ballistic}))),
+        ("/events", event(json!({"thrust": "on"}))),
+        ("/events", json!([condition])),
+        ("/stop/when", json!(vec![condition; 1001])),
+        ("/stop/when", json!([{"quantity": "time", "falls_through": 1}])),
+        ("/stop/when", json!([{"quantity": "speed", "rises_through": 1, "falls_through": 1}])),
+        ("/stop/when", json!([{"quantity": "speed"}])),
+        ("/stop/when", json!([1])),
+    ] {
+        let request = with(&flight("ecef"), pointer, value.clone());
+        agreement.refused("/simulate", &request, &format!("{value} at {pointer}")).await;
+    }
+    let without_a_nose = without(&model("heating"), "/vehicle/nose_radius");
+    agreement.refused("/simulate", &without_a_nose, "heating without a nose").await;
+    let theory = with(&flight("ecef"), "/solution", "loh");
+    let eventful = [("/heating", json!({})), ("/events", event(json!({})))];
+    for (pointer, value) in eventful {
+        agreement.refused("/analytic", &with(&theory, pointer, value), &format!("a theory with {pointer}")).await;
+    }
+    agreement.agree("/analytic", &with(&theory, "/events", json!([])), "a theory without events").await;
+    agreement.holds(13);
 }
 
 #[tokio::test]
@@ -313,10 +345,11 @@ async fn schema_and_service_agree_on_every_mutant_of_what_is_shown() {
                 for value in [json!(null), json!([]), json!("13")] {
                     let what = format!("{name} with {value} at {pointer}");
                     let request = with(&request, &pointer, value);
-                    // Any text is a name.
-                    match pointer.as_str() {
-                        "/name" => agreement.agree(path, &request, &what).await,
-                        _ => agreement.refused(path, &request, &what).await,
+                    // Any text is a name, and nothing need happen.
+                    if ["/name", "/events"].iter().any(|end| pointer.ends_with(end)) {
+                        agreement.agree(path, &request, &what).await;
+                    } else {
+                        agreement.refused(path, &request, &what).await;
                     }
                 }
                 // Where all fields have defaults, an empty object is complete.
@@ -327,7 +360,7 @@ async fn schema_and_service_agree_on_every_mutant_of_what_is_shown() {
                     let value = request.pointer(&pointer).unwrap().clone();
                     let removed = without(&request, &pointer);
                     // What other parts need of these, a schema does not see.
-                    if !(name == "lifting_capsule"
+                    if !(["lifting_capsule", "deorbit"].contains(&name.as_str())
                         && ["/angle_unit", "/atmosphere", "/epoch"].contains(&pointer.as_str()))
                     {
                         agreement.agree(path, &removed, &format!("{name} without {pointer}")).await;
@@ -368,6 +401,11 @@ async fn answers_are_valid() {
 }
 
 #[tokio::test]
+async fn the_validation_is_valid() {
+    is_valid(&schema("Validation"), &Service::new().get("/validation").await.json(), "the validation");
+}
+
+#[tokio::test]
 async fn problem_documents_are_valid() {
     let service = Service::new();
     let schema = schema("Problem");
@@ -405,7 +443,7 @@ fn every_operation_and_response_has_a_description() {
         }
     }
     let given: Vec<_> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
-    for path in ["/simulate", "/analytic", "/convert", "/health/live", "/health/ready"] {
+    for path in ["/simulate", "/analytic", "/convert", "/validation", "/health/live", "/health/ready"] {
         assert!(given.contains(&path), "{path}");
     }
 }

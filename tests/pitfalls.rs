@@ -33,7 +33,7 @@ fn a_grazing_impact_is_an_impact() {
             near(&what, flight.last().loads.altitude, altitude, 1e-8);
         }
     }
-    let above_the_dip = Case { stop: Stop { altitude: 200.0, time: 1e4 }, ..target_2() };
+    let above_the_dip = Case { stop: Stop { altitude: 200.0, time: 1e4, ..Stop::default() }, ..target_2() };
     assert!(fly(&above_the_dip).end_time() > 150.0);
 }
 
@@ -51,7 +51,7 @@ fn the_impact_lies_on_the_ground_at_every_tolerance() {
 #[test]
 fn the_state_at_the_impact_is_more_accurate_than_the_dense_output() {
     // The same flight into a pit passes the ground inside a step.
-    let pit = Case { stop: Stop { altitude: -3000.0, time: 1e4 }, ..target_2() };
+    let pit = Case { stop: Stop { altitude: -3000.0, time: 1e4, ..Stop::default() }, ..target_2() };
     let exact = fly(&with_tolerance(pit.clone(), 1e-14));
     let place = |point: reentry::trajectory::FlightPoint| point.flight_path.to_planet_fixed().position;
     let [mut on_dense, mut on_step] = [0.0; 2];
@@ -107,7 +107,7 @@ fn the_atmosphere_is_not_jumped_over() {
         let state =
             FlightPath { radius, longitude: 0.0, geocentric_latitude: 0.0, speed, flight_path_angle, heading: 0.3 };
         let case = starting(Case { planet, vehicle: vehicle(5000.0, 10.0, 0.0, 1.0), ..target_2() }, state);
-        let case = Case { stop: Stop { altitude: 0.0, time: 60_000.0 }, ..case };
+        let case = Case { stop: Stop { altitude: 0.0, time: 60_000.0, ..Stop::default() }, ..case };
         let exact = fly(&with_tolerance(case.clone(), 1e-13));
         let coasting = fly(&with_tolerance(in_vacuum(case.clone()), 1e-13));
         let lost = coasting.last().flight_path.speed - exact.last().flight_path.speed;
@@ -209,11 +209,11 @@ fn a_flight_that_never_lands_ends_with_its_time() {
         ..FlightPath::from_planet_fixed(&target_2().initial_state)
     };
     let case = starting(in_vacuum(target_2()), orbit);
-    let flight = fly(&Case { stop: Stop { altitude: 0.0, time: 20_000.0 }, ..case.clone() });
+    let flight = fly(&Case { stop: Stop { altitude: 0.0, time: 20_000.0, ..Stop::default() }, ..case.clone() });
     assert_eq!(flight.termination(), Termination::TimeLimit);
     near("the end", flight.end_time(), 20_000.0, 0.0);
 
-    let long = Case { stop: Stop { altitude: 0.0, time: 1e9 }, ..case };
+    let long = Case { stop: Stop { altitude: 0.0, time: 1e9, ..Stop::default() }, ..case };
     let error = try_to_fly(&long).unwrap_err();
     // 100 000 steps of some 200 s.
     assert!(matches!(error, SimulationError::StepLimit { limit: 100_000, time } if time < 1e8), "{error}");
@@ -228,7 +228,11 @@ fn a_flight_ends_soon_after_its_flag_is_raised() {
         ..FlightPath::from_planet_fixed(&target_2().initial_state)
     };
     let solver = Solver { step_limit: usize::MAX, ..Solver::default() };
-    let case = Case { solver, stop: Stop { altitude: 0.0, time: 1e9 }, ..starting(in_vacuum(target_2()), orbit) };
+    let case = Case {
+        solver,
+        stop: Stop { altitude: 0.0, time: 1e9, ..Stop::default() },
+        ..starting(in_vacuum(target_2()), orbit)
+    };
     let scenario = Scenario::new(case).unwrap();
     let interrupt = AtomicBool::new(false);
     // Without the look at the flag this flight takes 4 million steps and 2 GB.
@@ -278,7 +282,7 @@ fn a_start_on_the_ground_flies_only_upward() {
         }
         // Level, but faster than a satellite: the ground falls away.
         let off = fly(&Case {
-            stop: Stop { altitude: 0.0, time: 5.0 },
+            stop: Stop { altitude: 0.0, time: 5.0, ..Stop::default() },
             ..in_vacuum(starting(ballistic.clone(), at(0.0, 9000.0)))
         });
         assert_eq!(off.termination(), Termination::TimeLimit, "{above}");
@@ -328,7 +332,7 @@ fn light_bodies_stay_in_the_air_at_loose_tolerances() {
         for tolerance in [1e-3, 1e-4, 1e-5] {
             let state = FlightPath { radius: 6_378_137.0 + altitude, speed: 5000.0, flight_path_angle: -1.5, ..entry };
             let case = starting(Case { vehicle: vehicle(mass, area, 0.0, 1.0), ..target_2() }, state);
-            let case = Case { stop: Stop { altitude: 0.0, time: 300.0 }, ..case };
+            let case = Case { stop: Stop { altitude: 0.0, time: 300.0, ..Stop::default() }, ..case };
             let flight = fly(&with_tolerance(case, tolerance));
             let times = flight.instants(&Sampling::PerStep(16), usize::MAX).unwrap();
             for point in flight.points(&times) {
@@ -353,7 +357,10 @@ fn a_supercircular_level_start_flies_whatever_its_rounding() {
             flight_path_angle: 0.0,
             heading: f64::from(degrees) * 0.03,
         };
-        let case = Case { stop: Stop { altitude: 0.0, time: 10.0 }, ..in_vacuum(starting(target_2(), state)) };
+        let case = Case {
+            stop: Stop { altitude: 0.0, time: 10.0, ..Stop::default() },
+            ..in_vacuum(starting(target_2(), state))
+        };
         assert_eq!(fly(&case).termination(), Termination::TimeLimit, "{state:?}");
     }
 }

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use reentry::coordinates::{FlightPath, PlanetFixed};
-use reentry::motion::STANDARD_GRAVITY;
 use reentry::planet::Shape;
+use reentry::propulsion::STANDARD_GRAVITY;
 use reentry::trajectory::Sampling;
 use reentry::{Aerodynamics, Case, Control, Planet, Stop, Trajectory, Vehicle};
 
@@ -90,7 +90,7 @@ proptest! {
     #[test]
     fn loads_follow_from_their_definitions(case in random_entry()) {
         let flight = fly(&with_tolerance(case.clone(), 1e-12));
-        let Vehicle { mass, reference_area, aerodynamics } = case.vehicle;
+        let Vehicle { mass, reference_area, aerodynamics, .. } = case.vehicle;
         let Aerodynamics::Constant { lift_coefficient, drag_coefficient } = aerodynamics else {
             panic!("{aerodynamics:?}")
         };
@@ -145,7 +145,7 @@ fn positive_bank_turns_the_flight_to_the_left() {
         let case = Case {
             planet,
             control: Control::banked(bank_angle),
-            stop: Stop { altitude: 0.0, time: 60.0 },
+            stop: Stop { altitude: 0.0, time: 60.0, ..Stop::default() },
             ..target_2()
         };
         fly(&case).last().flight_path.heading
@@ -168,7 +168,7 @@ fn upward_lift_makes_a_shallow_entry_skip() {
     };
     let with_lift = |lift_coefficient: f64| {
         let aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient: 0.5 };
-        let vehicle = Vehicle { mass: 2000.0, reference_area: 10.0, aerodynamics };
+        let vehicle = Vehicle { mass: 2000.0, reference_area: 10.0, aerodynamics, nose_radius: None };
         let case =
             Case { vehicle, control: Control::banked(0.0), initial_state: shallow.to_planet_fixed(), ..target_2() };
         let flight = fly(&case);

@@ -402,7 +402,7 @@ fn coefficients_beyond_a_table_are_those_of_its_edge() {
 
 #[test]
 fn a_vehicle_has_lift_where_its_model_has_some() {
-    let with = |aerodynamics| Vehicle { mass: 1.0, reference_area: 1.0, aerodynamics }.has_lift();
+    let with = |aerodynamics| Vehicle { mass: 1.0, reference_area: 1.0, aerodynamics, nose_radius: None }.has_lift();
     let table =
         |lift: [f64; 2]| Aerodynamics::MachTable(Arc::new(MachTable::new(&[1.0, 2.0], &lift, &[1.0; 2]).unwrap()));
     assert!(with(table([0.0, 0.1])) && !with(table([0.0, 0.0])));

@@ -4,10 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
-const CORE: [&[&str]; 10] = [
+const CORE: [&[&str]; 11] = [
     &["scalar", "root"],
     &["integrate", "interpolation"],
-    &["planet", "atmosphere", "vehicle", "control"],
+    &["planet", "atmosphere", "vehicle", "control", "propulsion", "heating"],
+    &["event"],
     &["coordinates"],
     &["wind"],
     &["motion"],
@@ -23,7 +24,7 @@ const SERVICE: [&[&str]; 9] = [
     &["error", "telemetry"],
     &["compute", "format", "openapi"],
     &["answer", "state"],
-    &["extract"],
+    &["extract", "validation"],
     &["endpoints"],
     &["router"],
     &["serve"],

@@ -1,55 +1,101 @@
-//! Prints the tables of validation results in the README, over HTTP: every case of the thesis against an independent program, check
-//! cases against NASA's simulations, and the thesis's cases in standard air.
+//! The reference cases that are built into the program: `reentry validate`, `GET /validation`, and the README.
 
-use reentry_tests::cases::{distance, thesis_cases};
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use axum::http::StatusCode;
+use reentry_service::validation::{Check, Group, Validation};
 use reentry_tests::service::Service;
-use serde_json::json;
 
-#[tokio::main(flavor = "current_thread")]
-async fn main() {
-    let service = Service::new();
-    println!("| case | constants | impact at | place off by | at 1e-12 | spherical, at 1e-12 |");
-    println!("| --- | --- | --- | --- | --- | --- |");
-    for case in thesis_cases() {
-        let mut misses = Vec::new();
-        for solver in [
-            json!({}),
-            json!({"relative_tolerance": 1e-12}),
-            json!({"relative_tolerance": 1e-12, "formulation": "spherical"}),
-        ] {
-            let mut request = case.request.clone();
-            request["solver"] = solver;
-            request["output"] = json!({"trajectory": false});
-            let answer = service.post("/simulate", &request).await.json();
-            misses.push(distance(&answer["final_state"], &case.expected["final_state"]));
-        }
-        let expected = &case.expected["final_state"];
-        let degrees = |name: &str| expected[name].as_f64().map(f64::to_degrees).unwrap_or_default();
-        let place = format!(
-            "{:.3} s, {:.5}° N, {:.5}° E",
-            expected["time"].as_f64().unwrap_or_default(),
-            degrees("geodetic_latitude"),
-            degrees("longitude"),
-        );
-        let [plain, fine, spherical] = misses[..] else { unreachable!("three flights") };
-        let title = case.title.trim_start_matches("Jameson 2006, ");
-        println!(
-            "| {title} | `{}` | {place} | {} | {} | {} |",
-            case.model,
-            metres(plain),
-            metres(fine),
-            metres(spherical)
-        );
-    }
-    println!("\n{}", reentry_tests::nesc::table().await);
-    print!("{}", reentry_tests::standard_air::table().await);
+fn validation() -> Validation {
+    Validation::run(&AtomicBool::new(false)).unwrap()
 }
 
-/// A distance in a unit that suits it.
-fn metres(distance: f64) -> String {
-    match distance {
-        distance if distance >= 1e-3 => format!("{:.1} mm", distance * 1e3),
-        distance if distance >= 1e-6 => format!("{:.1} µm", distance * 1e6),
-        _ => "< 1 µm".to_owned(),
+#[test]
+fn every_reference_case_comes_out_as_expected() {
+    let validation = validation();
+    let misses: Vec<_> = validation.misses().map(Check::told).collect();
+    assert!(validation.passed && misses.is_empty(), "{}", misses.join("\n"));
+}
+
+/// A file that is not read would be a check less, and nothing more.
+#[test]
+fn no_check_is_left_out() {
+    let validation = validation();
+    for (group, count) in [
+        // Seven cases, three sets of constants, three numbers.
+        (Group::Thesis, 63),
+        (Group::Conversions, 12),
+        (Group::Theories, 7),
+        // Three simulations of three cases, of which one does not tell the place; and a tenth case.
+        (Group::CheckCases, 3 * 5 + 2),
+        (Group::StandardAir, 8),
+        (Group::Frames, 9),
+        (Group::Flights, 9),
+    ] {
+        let found = validation.checks.iter().filter(|check| check.group == group);
+        assert_eq!(found.count(), count, "{group:?}");
     }
+    assert!(validation.checks.iter().all(|check| check.got.is_some() && !check.source.is_empty()));
+    let judged = |check: &Check| check.passed.is_some() == (check.group != Group::Flights);
+    assert!(validation.checks.iter().all(judged), "entries that were flown are no references, and all else is one");
+}
+
+#[test]
+fn every_file_of_cases_is_built_in() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let built_in = fs::read_to_string(root.join("../crates/service/src/validation/cases.rs")).unwrap();
+    let mut open = vec![root.join("cases")];
+    let mut count = 0;
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            open.extend(fs::read_dir(&path).unwrap().flatten().map(|entry| entry.path()));
+        } else {
+            let name = path.strip_prefix(root).unwrap().display().to_string();
+            assert!(built_in.contains(&format!("/tests/{name}\")")), "{name} is not in the program");
+            count += 1;
+        }
+    }
+    assert!(count > 15, "only {count} files");
+}
+
+#[tokio::test]
+async fn the_service_answers_with_the_validation() {
+    let service = Service::new();
+    let answer = service.get("/validation").await;
+    assert_eq!(
+        (answer.status, &answer.headers["content-type"]),
+        (StatusCode::OK, &"application/json".parse().unwrap())
+    );
+    assert_eq!(answer.body, validation().to_json().unwrap());
+    assert_eq!(service.get("/validation?format=json").await.body, answer.body);
+    assert_eq!(service.get("/validation?format=csv").await.status, StatusCode::NOT_ACCEPTABLE);
+    assert_eq!(service.get("/validation?case=1").await.status, StatusCode::BAD_REQUEST);
+    assert_eq!(service.post_text("/validation", "{}").await.status, StatusCode::METHOD_NOT_ALLOWED);
+}
+
+#[test]
+fn a_validation_for_which_nobody_waits_ends() {
+    assert!(Validation::run(&AtomicBool::new(true)).is_err());
+}
+
+#[test]
+fn the_readme_has_the_validation() {
+    let markdown = validation().to_markdown();
+    assert!(include_str!("../README.md").contains(&markdown), "out of date: run `make validation`\n{markdown}");
+}
+
+#[test]
+fn the_text_has_every_check_and_every_source() {
+    let validation = validation();
+    let text = validation.to_text();
+    for check in &validation.checks {
+        let line = text.lines().find(|line| line.contains(&check.case) && line.contains(&check.quantity));
+        assert!(line.is_some_and(|line| !line.contains("MISSED")), "{}", check.told());
+        assert!(text.contains(&check.source) && text.contains(&check.note), "{}", check.told());
+    }
+    assert!(text.ends_with(
+        "116 checks against references: all passed. 9 plausibilities, whose differences are told and do not count.\n"
+    ));
 }

@@ -84,7 +84,11 @@ fn the_finer_flight_may_take_more_steps() {
         flight_path_angle: 0.0,
         heading: 0.5,
     };
-    let case = Case { initial_state: orbit.to_planet_fixed(), stop: Stop { altitude: 0.0, time: 2e5 }, ..target_2() };
+    let case = Case {
+        initial_state: orbit.to_planet_fixed(),
+        stop: Stop { altitude: 0.0, time: 2e5, ..Stop::default() },
+        ..target_2()
+    };
     let steps = fly(&case).statistics().steps;
     let case = Case { solver: Solver { step_limit: steps + 100, ..case.solver }, ..case };
     assert!(fly(&with_tolerance(case.clone(), 1e-10)).statistics().steps <= steps);

@@ -10,7 +10,7 @@ use super::requests::{ALTERNATIVES, KINDS, capsule, conversion, flight, state, w
 async fn every_missing_field_is_named() {
     let steady = Steady::new().await;
     let fields: Vec<_> = fields().into_iter().filter(|field| field.need == Need::Required).collect();
-    assert_eq!(fields.len(), 119);
+    assert_eq!(fields.len(), 129);
     for field in fields {
         let request = without(&field.request, &field.pointer);
         steady.refused_at(field.path, &request, &[(&field.pointer, "is required")]).await;
@@ -38,6 +38,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
             };
             let expected = match field.kind {
                 Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) => "must be a number",
+                Kind::Thrust => "must be \"off\" or an object",
                 Kind::Whole => "must be a whole number",
                 Kind::Name => "must be one of ",
                 Kind::Text => "must be a string",
@@ -136,8 +137,16 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/atmosphere/type" => "must be one of exponential, us76, layered_exponential, table, vacuum, got ",
                 "/atmosphere/preset" => "must be one of earth_seven_layer, got ",
                 "/wind/type" => "must be one of constant, table, got ",
-                "/vehicle/aerodynamics/type" => {
+                "/vehicle/aerodynamics/type" | "/events/0/then/aerodynamics/type" => {
                     "must be one of constant, ballistic, mach_table, alpha_mach_table, got "
+                }
+                "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
+                "/heating/radiative" => "must be one of none, tauber_sutton, got ",
+                "/events/0/when/quantity" | "/stop/when/0/quantity" => {
+                    "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, got "
+                }
+                "/events/0/then/delta_v/along" | "/events/0/then/thrust/along" => {
+                    "must be one of velocity, radial, normal, got "
                 }
                 "/control/bank_angle/type" => "must be one of schedule, got ",
                 "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, got ",

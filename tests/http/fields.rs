@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use serde_json::{Value, json};
 
-use super::requests::{ALTERNATIVES, KINDS, conversion, flight, models, with, without};
+use super::requests::{ALTERNATIVES, KINDS, condition, conversion, flight, model, models, with, without};
 
 /// A field of a request.
 pub(crate) struct Field {
@@ -37,6 +37,8 @@ pub(crate) enum Kind {
     Angle(Range),
     /// The same, or an object with a schedule.
     Command(Range),
+    /// An object with a thrust, or `"off"`.
+    Thrust,
     /// A whole number.
     Whole,
     /// One of some names.
@@ -79,7 +81,7 @@ pub(crate) enum Limit {
 
 use Kind::{
     Angle, Boolean, Command, False, Instant, Matrix, Name, Names, Number, Numbers, Object, Objects, SiderealTime, Text,
-    Vector, Whole,
+    Thrust, Vector, Whole,
 };
 use Limit::{Closed, Open, Unlimited};
 use Need::{Alternative, Optional, Required};
@@ -95,6 +97,11 @@ const QUARTER: Range = between(-FRAC_PI_2, FRAC_PI_2);
 const HALF: Range = between(0.0, PI);
 const TURN: Range = between(-TAU, TAU);
 
+const TIME: Range = between(0.0, 1e9);
+const VELOCITY: Range = between(-1e6, 1e6);
+const FORCE: Range = between(-1e12, 1e12);
+const SPECIFIC_IMPULSE: Range = between(1e-3, 1e9);
+const EMISSIVITY: Range = Range { low: Open(0.0), high: Closed(1.0) };
 const WIND: Range = between(-1e4, 1e4);
 const COEFFICIENT: Range = between(-0.1, 0.1);
 
@@ -120,7 +127,7 @@ const SHARED: [Row; 13] = [
     ("/planet/rotation_rate", Required, Number(between(-1.0, 1.0))),
 ];
 
-const CASE: [Row; 25] = [
+const CASE: [Row; 29] = [
     ("/name", Optional, Text),
     ("/atmosphere", Optional, Object),
     ("/atmosphere/type", Required, Name),
@@ -138,12 +145,16 @@ const CASE: [Row; 25] = [
     ("/vehicle/aerodynamics/type", Required, Name),
     ("/vehicle/aerodynamics/lift_coefficient", Optional, Number(FINITE)),
     ("/vehicle/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
+    ("/vehicle/nose_radius", Optional, Number(POSITIVE)),
     ("/control", Optional, Object),
     ("/control/bank_angle", Optional, Command(TURN)),
     ("/control/angle_of_attack", Optional, Command(TURN)),
     ("/stop", Optional, Object),
     ("/stop/altitude", Optional, Number(DISTANCE)),
     ("/stop/time", Optional, Number(Range { low: Open(0.0), high: Closed(1e9) })),
+    ("/stop/ceiling", Optional, Number(DISTANCE)),
+    ("/stop/when", Optional, Objects),
+    ("/stop/when/0/quantity", Required, Name),
     ("/output", Optional, Object),
     ("/solver", Optional, Object),
 ];
@@ -209,9 +220,54 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
             ],
         ),
         "columns" => ("/output", &[("/columns", Optional, Names)]),
+        "heating" => (
+            "/heating",
+            &[
+                ("", Optional, Object),
+                ("/convective", Optional, Name),
+                ("/radiative", Optional, Name),
+                ("/emissivity", Optional, Number(EMISSIVITY)),
+            ],
+        ),
+        "events" => ("/events", &EVENT),
+        "thrust off" => ("/events/0/then", &[("/thrust", Optional, Thrust)]),
         _ => panic!("no such model: {name}"),
     }
 }
+
+/// An event with every effect there is.
+const EVENT: [Row; 19] = [
+    ("", Optional, Objects),
+    ("/0/name", Optional, Text),
+    ("/0/when", Required, Object),
+    ("/0/when/quantity", Required, Name),
+    ("/0/then", Optional, Object),
+    ("/0/then/mass", Optional, Number(POSITIVE)),
+    ("/0/then/reference_area", Optional, Number(NOT_NEGATIVE)),
+    ("/0/then/aerodynamics", Optional, Object),
+    ("/0/then/aerodynamics/type", Required, Name),
+    ("/0/then/aerodynamics/lift_coefficient", Optional, Number(FINITE)),
+    ("/0/then/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
+    ("/0/then/delta_v", Optional, Object),
+    ("/0/then/delta_v/along", Required, Name),
+    ("/0/then/delta_v/value", Required, Number(VELOCITY)),
+    ("/0/then/thrust", Optional, Thrust),
+    ("/0/then/thrust/along", Required, Name),
+    ("/0/then/thrust/value", Required, Number(FORCE)),
+    ("/0/then/thrust/specific_impulse", Required, Number(SPECIFIC_IMPULSE)),
+    ("/0/then/thrust/propellant", Optional, Number(POSITIVE)),
+];
+
+/// What a condition may wait for, and the values that it may pass.
+pub(crate) const QUANTITIES: [(&str, Kind); 7] = [
+    ("time", Number(TIME)),
+    ("altitude", Number(DISTANCE)),
+    ("speed", Number(SPEED)),
+    ("mach", Number(NOT_NEGATIVE)),
+    ("dynamic_pressure", Number(NOT_NEGATIVE)),
+    ("load_factor", Number(NOT_NEGATIVE)),
+    ("flight_path_angle", Angle(QUARTER)),
+];
 
 const SOLVER: [Row; 2] =
     [("/solver/formulation", Optional, Name), ("/solver/relative_tolerance", Optional, Number(between(1e-14, 1e-3)))];
@@ -287,6 +343,17 @@ pub(crate) fn fields() -> Vec<Field> {
         add("/simulate", &request, place, rows);
     }
 
+    for (quantity, kind) in QUANTITIES {
+        // Time never falls.
+        let ways: &[&str] = if quantity == "time" { &["rises_through"] } else { &["falls_through", "rises_through"] };
+        for way in ways {
+            for place in ["/events/0/when", "/stop/when/0"] {
+                let request = with(&model("events"), place, condition(quantity, way, 1.0));
+                add("/simulate", &request, &format!("{place}/"), &[(way, Alternative, kind)]);
+            }
+        }
+    }
+
     for kind in KINDS {
         for (path, request, state) in
             [("/simulate", flight(kind), "/initial_state"), ("/convert", conversion(kind), "/state")]
@@ -342,7 +409,7 @@ impl Kind {
         if !matches!(self, Vector | Numbers | Matrix | Names | Objects) {
             wrong.push(json!([1, 2, 3]));
         }
-        if !matches!(self, Object | Command(_)) {
+        if !matches!(self, Object | Command(_) | Thrust) {
             wrong.push(json!({"value": 1}));
         }
         wrong

@@ -96,7 +96,7 @@ async fn an_invalid_case_gets_its_problem() {
         "errors": [
             {"pointer": "/vehicle/mass", "detail": "must be greater than 0, got -13"},
             {"pointer": "/vehicle/colour",
-                "detail": "is not a field here; the fields are mass, reference_area, aerodynamics"},
+                "detail": "is not a field here; the fields are mass, reference_area, aerodynamics, nose_radius"},
             {"pointer": "/initial_state/heading", "detail": "must be between -6.283185307179586 and \
                 6.283185307179586, got 30 (radians); were degrees meant? Then send \"angle_unit\": \"deg\""},
         ],

@@ -33,7 +33,7 @@ pub(crate) fn state(kind: &str) -> Value {
     }
 }
 
-/// A second of flight, with every field given that may be given beside the others.
+/// A second of flight, with every field given that may be given beside the others; `/analytic` takes it as well.
 pub(crate) fn flight(kind: &str) -> Value {
     json!({
         "name": "a second of flight",
@@ -50,10 +50,11 @@ pub(crate) fn flight(kind: &str) -> Value {
             "mass": 700,
             "reference_area": 0.2,
             "aerodynamics": {"type": "constant", "lift_coefficient": 0.2, "drag_coefficient": 0.2},
+            "nose_radius": 0.3,
         },
         "control": {"bank_angle": 0.8, "angle_of_attack": 0},
         "initial_state": state(kind),
-        "stop": {"altitude": -1e4, "time": 1},
+        "stop": {"altitude": -1e4, "time": 1, "ceiling": 3e6, "when": [{"quantity": "speed", "falls_through": 10}]},
         "output": {"count": 3},
         "solver": {"formulation": "cartesian", "relative_tolerance": 1e-9},
     })
@@ -151,7 +152,47 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             ),
         ),
         ("columns", with(&flight(), "/output/columns", json!(["time", "altitude"]))),
+        (
+            "heating",
+            with(
+                &flight(),
+                "/heating",
+                json!({"convective": "chapman", "radiative": "tauber_sutton", "emissivity": 0.8}),
+            ),
+        ),
+        ("events", with(&flight(), "/events", json!([everything_changes()]))),
+        (
+            "thrust off",
+            with(&flight(), "/events", json!([event("time", "rises_through", 0.5, &json!({"thrust": "off"}))])),
+        ),
     ]
+}
+
+/// The flight with one of the other models.
+pub(crate) fn model(name: &str) -> Value {
+    models().into_iter().find(|(of, _)| *of == name).unwrap().1
+}
+
+/// A condition: a quantity, which way it passes the value, and the value.
+pub(crate) fn condition(quantity: &str, way: &str, value: f64) -> Value {
+    json!({"quantity": quantity, way: value})
+}
+
+/// An event with its effect.
+pub(crate) fn event(quantity: &str, way: &str, value: f64, then: &Value) -> Value {
+    json!({"when": condition(quantity, way, value), "then": then})
+}
+
+/// An event on the way of every [`flight`], with every effect there is.
+fn everything_changes() -> Value {
+    let then = json!({
+        "mass": 650,
+        "reference_area": 0.3,
+        "aerodynamics": {"type": "constant", "lift_coefficient": 0.1, "drag_coefficient": 0.4},
+        "delta_v": {"along": "normal", "value": 20},
+        "thrust": {"along": "velocity", "value": -3000, "specific_impulse": 280, "propellant": 0.5},
+    });
+    with(&event("altitude", "falls_through", 89_950.0, &then), "/name", "all at once")
 }
 
 /// The least that can be flown: a capsule from 120 km.

@@ -14,6 +14,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import jsonschema
 import pytest
 from conftest import BINARY, LONG, ORBIT, PATIENCE, clean_environment, run, wait_for
 
@@ -120,7 +121,7 @@ def test_a_file_that_cannot_be_read_or_written_ends_with_3(arguments, told):
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["frobnicate"], ["simulate"], ["simulate", TARGET, "-f", "ndjson"], ["convert", STATE, "-f", "csv"], ["completions", "x"]]
+    "arguments", [[], ["frobnicate"], ["simulate"], ["validate", "-f", "csv"], ["simulate", TARGET, "-f", "ndjson"], ["convert", STATE, "-f", "csv"], ["completions", "x"]]
 )
 def test_a_wrong_command_line_ends_with_2(arguments):
     result = run(*arguments)
@@ -197,7 +198,7 @@ def test_a_list_as_csv_is_one_table_with_the_number_of_the_case(file):
     assert rows[1:] == [[case, *row] for case in "13" for row in single[1:]]
 
 
-@pytest.mark.parametrize("command", [["simulate"], ["simulate", "-f", "csv"], ["openapi"], ["completions", "bash"]])
+@pytest.mark.parametrize("command", [["simulate"], ["simulate", "-f", "csv"], ["validate"], ["openapi"], ["completions", "bash"]])
 def test_a_reader_that_has_enough_is_no_failure(file, command):
     # More than a pipe holds.
     arguments = [*command, file([CASE] * 300)] if command[0] == "simulate" else command
@@ -307,13 +308,13 @@ def test_the_program_tells_its_version_its_codes_and_its_document(service):
     version = json.loads(run("openapi").stdout)["info"]["version"]
     assert run("--version").stdout == f"reentry {version}\n"
     assert json.loads(run("openapi").stdout) == json.loads(service.get("/openapi.json").body)
-    for arguments in [["--help"], ["simulate", "--help"], ["convert", "--help"]]:
+    for arguments in [["--help"], ["simulate", "--help"], ["convert", "--help"], ["validate", "--help"]]:
         text = run(*arguments).stdout
         assert "Exit codes:\n  0  " in text
         assert "\n  3  a file cannot be read or written" in text
 
 
-@pytest.mark.parametrize("command", ["simulate", "convert"])
+@pytest.mark.parametrize("command", ["simulate", "convert", "validate"])
 def test_the_examples_of_the_help_can_be_pasted(command, tmp_path):
     (tmp_path / "case.json").write_text(json.dumps(CASE))
     (tmp_path / "cases.json").write_text(json.dumps([CASE, CASE]))
@@ -324,6 +325,34 @@ def test_the_examples_of_the_help_can_be_pasted(command, tmp_path):
     environment = clean_environment(PATH=f"{Path(BINARY).resolve().parent}:{os.environ['PATH']}")
     result = subprocess.run(["bash", "-ec", script], cwd=tmp_path, env=environment, capture_output=True, timeout=PATIENCE)
     assert (result.returncode, result.stderr) == (0, b"")
+
+
+def test_the_reference_cases_pass_and_are_told_as_text():
+    result = run("validate")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "MISSED" not in result.stdout
+    assert "checks against references: all passed." in result.stdout.splitlines()[-1]
+    assert "Stardust" in result.stdout
+
+
+def test_the_validation_is_that_of_the_service_and_fits_its_schema(service):
+    result = run("validate", "--format", "json")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.encode() == service.get("/validation").body + b"\n"
+    validation = json.loads(result.stdout)
+    document = json.loads(run("openapi").stdout)
+    schema = {"$ref": "#/components/schemas/Validation", "components": document["components"]}
+    jsonschema.Draft202012Validator(schema).validate(validation)
+    assert validation["passed"]
+    kinds = [check["kind"] for check in validation["checks"]]
+    assert kinds.count("reference") > 100
+    assert all(check["passed"] == (True if check["kind"] == "reference" else None) for check in validation["checks"])
+
+
+def test_the_readme_has_the_validation_as_it_is_shipped():
+    result = run("validate", "--format", "markdown")
+    assert result.returncode == 0
+    assert result.stdout in (Path(__file__).parents[2] / "README.md").read_text()
 
 
 def test_bash_completes_the_commands(file):

@@ -76,6 +76,8 @@ impl fmt::Display for End {
         match self {
             Self::Flight(Termination::SurfaceImpact) => write!(f, "the flight ends at the stop altitude"),
             Self::Flight(Termination::TimeLimit) => write!(f, "the flight ends at the stop time"),
+            Self::Flight(Termination::Condition(_)) => write!(f, "the flight ends by a condition"),
+            Self::Flight(Termination::AtmosphereExit) => write!(f, "the flight ends at the ceiling"),
             Self::Climb => write!(f, "the flight no longer descends"),
             Self::LargeAngle => write!(f, "|γ| of equation 78 exceeds 5°"),
             Self::Level(equation) => write!(f, "cos γ of equation {equation} exceeds 1"),
@@ -123,6 +125,9 @@ pub enum Fault {
     /// Coefficients that change during the flight.
     #[error("must be constant or ballistic: the theory knows constant coefficients")]
     NotConstant,
+    /// A flight of several phases.
+    #[error("must be left out: the theory knows one vehicle, without thrust")]
+    Events,
     /// The air at entry is thinner than any number.
     #[error("the flight begins so high that the air has no density: the theory is of flight through air")]
     NoAirAtEntry,
@@ -210,6 +215,9 @@ impl Theory {
         let eta_e = eta_by_density * case.forces().loads(0.0, &case.initial_state).density;
 
         let mut faults = solution.vehicle_faults(&case.vehicle, &case.atmosphere, case.density_factor);
+        if !case.events.is_empty() {
+            faults.push(Fault::Events);
+        }
         if faults.is_empty() && eta_e == 0.0 {
             faults.push(Fault::NoAirAtEntry);
         }

@@ -142,9 +142,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.take(system, trial, end, end_derivative)
     }
 
-    /// Goes on from the end of a step with a system that changes there.
-    pub fn restart<F: Pace<N>>(&mut self, system: &F, step: &Step<N>) {
-        (self.control.time, self.state) = (step.end_time, step.end);
+    /// Goes on from the end of a step with a system, or a state, that changes there.
+    pub fn restart<F: Pace<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
+        (self.control.time, self.state) = (time, state);
         self.derivative = system.derivative(self.control.time, &self.state);
         self.control.statistics.evaluations += 1;
         self.control.shorten(system.longest_step(self.control.time, &self.state));

@@ -37,8 +37,11 @@
 //!         mass: 700.0,
 //!         reference_area: 0.216_419,
 //!         aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.2, drag_coefficient: 0.2 },
+//!         nose_radius: None,
 //!     },
 //!     control: Control::banked(0.8),
+//!     heating: None,
+//!     events: Vec::new(),
 //!     initial_state: entry.to_planet_fixed(),
 //!     stop: Stop::default(),
 //!     solver: Solver::default(),
@@ -65,7 +68,10 @@ pub mod motion;
 
 pub mod atmosphere;
 pub mod control;
+pub mod event;
+pub mod heating;
 pub mod planet;
+pub mod propulsion;
 pub mod vehicle;
 pub mod wind;
 

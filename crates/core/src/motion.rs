@@ -1,10 +1,13 @@
 //! The equations of motion: the forces, gathered once, and the two formulations that integrate them.
 
 mod cartesian;
+mod directions;
+mod loads;
 mod regime;
 mod spherical;
 
 pub use cartesian::Cartesian;
+pub use loads::Loads;
 pub use regime::{Lookup, Regime, Switch};
 pub use spherical::Spherical;
 
@@ -13,18 +16,18 @@ pub(crate) use regime::{Chatter, Quantity};
 use nalgebra::Vector3;
 use num_dual::Dual64;
 
-use crate::atmosphere::{Atmosphere, AtmosphereSample};
+use crate::atmosphere::Atmosphere;
 use crate::control::{Against, Command, Control};
 use crate::coordinates::PlanetFixed;
+use crate::heating::{HeatFlux, Stagnation};
 use crate::integrate::Pace;
 use crate::interpolation::Hint;
-use crate::planet::{Gravity, Planet, Pull};
+use crate::planet::{Gravity, Planet};
+use crate::propulsion::Axis;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
-
-/// The unit of the load factor, m/s²: the standard acceleration of gravity (3rd CGPM, 1901).
-pub const STANDARD_GRAVITY: f64 = 9.806_65;
+use directions::{Directions, lift_fade_over_cosine};
 
 /// Within this angle of the vertical the lift fades out, rad: in vertical flight the bank angle has no meaning.
 pub const LIFT_FADE_ANGLE: f64 = 1e-3;
@@ -41,6 +44,7 @@ pub struct Forces<P = f64> {
     parameters: Parameters<P>,
     area_over_mass: P,
     sin_cos_bank: (P, P),
+    burn: Option<Burn<P>>,
     regime: Regime,
     has_switches: bool,
     /// Whether all models are those of the thesis. Functions with a constant `THESIS` know it when they are compiled, so that what
@@ -72,6 +76,8 @@ pub struct Models {
     pub aerodynamics: Aerodynamics,
     /// The angles at which the vehicle flies.
     pub control: Control,
+    /// The heating of its nose, where it is asked for.
+    pub heating: Option<Stagnation>,
 }
 
 /// The numbers that may vary, beside the state.
@@ -91,41 +97,70 @@ pub struct Parameters<P> {
     pub bank_angle: P,
 }
 
-/// What the air does to the vehicle at an instant.
+/// A thrust that is on; in numbers of the vehicle's mass at a given instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loads<S> {
-    /// Along the radius vector, above the surface, m.
-    pub altitude: S,
-    /// kg/m³.
-    pub density: S,
-    /// Relative to the air, m/s.
-    pub air_speed: S,
-    /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
-    pub mach: Option<S>,
-    /// ½ρV² of the speed relative to the air, Pa.
-    pub dynamic_pressure: S,
-    /// -dV/dt of the relative speed, m/s²; at rest minus the magnitude of the acceleration.
-    pub deceleration: S,
-    /// The aerodynamic force over the weight at standard gravity.
-    pub load_factor: S,
+pub struct Burn<P> {
+    /// Where to.
+    pub along: Axis,
+    /// The instant, s.
+    pub since: P,
+    /// The thrust over the mass then, m/s².
+    pub acceleration: P,
+    /// The part of the mass then that is burnt in a second, 1/s.
+    pub flow: P,
 }
 
-/// A formulation: six numbers that hold the state, and how they change.
-pub trait Formulation: Pace<6> {
-    /// The six numbers of a state.
-    fn coordinates<S: Scalar>(state: &PlanetFixed<S>) -> [S; 6];
+impl<P: Scalar> Burn<P> {
+    /// The mass at the instant over the mass at a time, s: the rate at which it is burnt is constant.
+    #[inline(always)]
+    fn lightness<S: Over<P>>(&self, time: S) -> S {
+        (S::one() - (time + -self.since) * self.flow).recip()
+    }
+}
 
-    /// The state of six numbers.
-    fn planet_fixed<S: Scalar>(coordinates: &[S; 6]) -> PlanetFixed<S>;
+/// Powers over the mass, W/kg, or their work, J/kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Power {
+    /// That drag, and in wind lift, takes.
+    pub(crate) drag: f64,
+    /// That thrust gives.
+    pub(crate) thrust: f64,
+}
+
+/// A formulation: `N` numbers that hold the state, and how they change. Six hold place and motion; a seventh is the heat load, J/m².
+pub trait Formulation<const N: usize>: Pace<N> {
+    /// The numbers of a state.
+    fn coordinates<S: Scalar>(state: &PlanetFixed<S>, heat_load: S) -> [S; N];
+
+    /// The state of the numbers, without the heat load.
+    fn planet_fixed<S: Scalar>(coordinates: &[S; N]) -> PlanetFixed<S>;
 
     /// The singularity of the equations that lies `within` this distance of a state: rad, or parts of the circular speed.
-    fn singularity(&self, coordinates: &[f64; 6], within: f64) -> Option<Singularity>;
+    fn singularity(&self, coordinates: &[f64; N], within: f64) -> Option<Singularity>;
 
     /// The forces in its equations.
     fn forces(&self) -> &Forces;
 
     /// The forces in its equations.
     fn forces_mut(&mut self) -> &mut Forces;
+}
+
+/// The heat load, J/m², of an entry from orbit: a smaller one is as exact as if it were this.
+const HEAT_LOAD: f64 = 1e8;
+
+/// Six numbers, and as the seventh, where there is one, the heat load.
+fn with_heat_load<S: Scalar, const N: usize>(coordinates: [S; 6], heat_load: S) -> [S; N] {
+    std::array::from_fn(|i| if i < 6 { coordinates[i] } else { heat_load })
+}
+
+/// The first six numbers.
+fn without_heat_load<S: Scalar, const N: usize>(coordinates: &[S; N]) -> [S; 6] {
+    std::array::from_fn(|i| coordinates[i])
+}
+
+/// The heat load, J/m², where the numbers have one.
+pub(crate) fn heat_load<const N: usize>(coordinates: &[f64; N]) -> Option<f64> {
+    coordinates.get(6).copied()
 }
 
 /// Where the spherical equations divide by zero.
@@ -166,17 +201,33 @@ impl<P: Scalar> Forces<P> {
         let sin_cos_bank = parameters.bank_angle.sin_cos();
         let by_mach = models.depend_on_mach();
         let of_thesis = models.are_of_thesis();
-        let (regime, has_switches, cells) = (Regime::default(), false, Cells::default());
-        let mut forces =
-            Self { models, parameters, area_over_mass, sin_cos_bank, regime, has_switches, of_thesis, by_mach, cells };
+        let (burn, regime, has_switches, cells) = (None, Regime::default(), false, Cells::default());
+        let mut forces = Self {
+            models,
+            parameters,
+            area_over_mass,
+            sin_cos_bank,
+            burn,
+            regime,
+            has_switches,
+            of_thesis,
+            by_mach,
+            cells,
+        };
         forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
         forces
+    }
+
+    /// The same forces with a thrust, if there is one.
+    #[must_use]
+    pub fn burning(self, burn: Option<Burn<P>>) -> Self {
+        Self { of_thesis: self.of_thesis && burn.is_none(), burn, ..self }
     }
 
     /// The acceleration relative to the rotating planet, m/s².
     ///
     /// ```text
-    /// dv/dt = g(r) + (D + L)/m - 2 ω×v - ω×(ω×r)
+    /// dv/dt = g(r) + (D + L + T)/m - 2 ω×v - ω×(ω×r)
     /// ```
     ///
     /// # Reference
@@ -198,8 +249,17 @@ impl<P: Scalar> Forces<P> {
 
     #[inline(always)]
     fn acceleration_by<const THESIS: bool, S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+        self.acceleration_in::<THESIS, _>(time, state, &self.flow::<THESIS, _>(state))
+    }
+
+    #[inline(always)]
+    fn acceleration_in<const THESIS: bool, S: Over<P>>(
+        &self,
+        time: S,
+        state: &PlanetFixed<S>,
+        flow: &Flow<S>,
+    ) -> Vector3<S> {
         let PlanetFixed { position, velocity } = state;
-        let flow = self.flow::<THESIS, _>(state);
         let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
         let Directions { radius, up, .. } = &flow.directions;
@@ -207,7 +267,38 @@ impl<P: Scalar> Forces<P> {
         let mut fall = if THESIS { planet.gravity_of_point(*radius, up) } else { planet.gravity(*radius, up) };
         fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
         fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
-        self.aerodynamic::<THESIS, _>(time, &flow) + fall
+        match if THESIS { None } else { self.thrust(time, state) } {
+            Some(thrust) => self.aerodynamic::<THESIS, _>(time, flow) + thrust + fall,
+            None => self.aerodynamic::<THESIS, _>(time, flow) + fall,
+        }
+    }
+
+    /// The acceleration, and the heat flux into the stagnation point, W/m², of the air that meets the vehicle.
+    #[inline(always)]
+    fn acceleration_and_heat_flux<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> (Vector3<S>, S) {
+        let flow = self.flow::<false, _>(state);
+        let acceleration = self.acceleration_in::<false, _>(time, state, &flow);
+        let heat_flux = self.heat_flux(self.density::<false, _>(&flow), flow.directions.speed);
+        (acceleration, heat_flux.map_or(S::zero(), |flux| flux.total()))
+    }
+
+    /// Into the stagnation point, in air of a density, kg/m³, at a speed relative to it, m/s.
+    #[inline(always)]
+    fn heat_flux<S: Over<P>>(&self, density: S, air_speed: S) -> Option<HeatFlux<S>> {
+        let heating = self.models.heating.as_ref()?;
+        Some(heating.heat_flux(self.regime.of(Switch::Radiation), density, air_speed))
+    }
+
+    /// The thrust over the mass, m/s², where there is one.
+    ///
+    /// # Reference
+    /// K. D. Hicks, Introduction to Astrodynamic Reentry, 2006, page 58, to which Jameson 2006 points in its last chapter: the thrust
+    /// stands beside lift and drag; here it is constant and along one of three directions.
+    #[inline(always)]
+    fn thrust<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Option<Vector3<S>> {
+        let burn = self.burn.as_ref()?;
+        let acceleration = burn.lightness(time) * burn.acceleration;
+        Some(along(burn.along, state) * acceleration)
     }
 
     /// Lift and drag over the mass, m/s².
@@ -308,6 +399,10 @@ impl<P: Scalar> Forces<P> {
     fn air<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Air<S> {
         let speed = flow.directions.speed;
         let acceleration = speed * speed * 0.5 * self.area_over_mass;
+        let acceleration = match &self.burn {
+            Some(burn) if !THESIS => acceleration * burn.lightness(time),
+            _ => acceleration,
+        };
         let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
         match self.coefficients::<THESIS, _>(time, flow) {
             None => Air { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient },
@@ -369,6 +464,7 @@ impl Models {
                 wind: Wind::Still,
                 aerodynamics: Aerodynamics::Constant { .. },
                 control: Control { bank_angle: Command::Constant(_), angle_of_attack: Command::Constant(_) },
+                heating: None,
             }
         )
     }
@@ -436,7 +532,8 @@ impl Forces {
         let rise = position.dot(velocity) / radius;
         let inertial = velocity + Vector3::z().cross(position) * self.models.planet.rotation_rate;
         let level_squared = inertial.norm_squared() - rise * rise;
-        let fall = (self.models.planet.point_gravity(radius) - level_squared / radius).max(0.0);
+        let thrust = self.thrust(time, state).map_or(0.0, |thrust| thrust.norm());
+        let fall = (self.models.planet.point_gravity(radius) - level_squared / radius + thrust).max(0.0);
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
         let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
@@ -446,133 +543,45 @@ impl Forces {
         if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
     }
 
-    /// The power that lift and drag take from the vehicle, over its mass, W/kg.
-    pub(crate) fn power_lost(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
-        -self.aerodynamic::<false, _>(time, &self.flow::<false, _>(state)).dot(&state.velocity)
+    /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.
+    pub(crate) fn power(&self, time: f64, state: &PlanetFixed<f64>) -> Power {
+        let aerodynamic = self.aerodynamic::<false, _>(time, &self.flow::<false, _>(state));
+        let thrust = self.thrust(time, state).map_or(0.0, |thrust| thrust.dot(&state.velocity));
+        Power { drag: -aerodynamic.dot(&state.velocity), thrust }
     }
 
     /// D/m, m/s², of constant coefficients under a dynamic pressure, Pa.
     pub(crate) fn drag_under(&self, dynamic_pressure: f64) -> f64 {
         dynamic_pressure * self.area_over_mass * self.parameters.drag_coefficient
     }
-
-    /// The loads in a state.
-    pub fn loads<S: Over<f64> + Scalar<Mask = bool>>(&self, time: S, state: &PlanetFixed<S>) -> Loads<S> {
-        let PlanetFixed { position, velocity } = state;
-        let mut flow = self.flow::<false, _>(state);
-        if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
-            let (density, sound) = self.models.atmosphere.density_and_sound(
-                self.regime.of(Switch::Atmosphere),
-                flow.altitude,
-                &self.cells.atmosphere,
-            );
-            flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
-        }
-        let Directions { radius, speed, up, ahead, cos_gamma, .. } = &flow.directions;
-        let density = self.density::<false, _>(&flow);
-        let dynamic_pressure = density * *speed * *speed * 0.5;
-        let air = self.air::<false, _>(time, &flow);
-        let deceleration = if flow.ground_speed.less_than(f64::MIN_POSITIVE) {
-            -length(&self.acceleration(time, state))
-        } else if matches!(self.models.wind, Wind::Still) {
-            // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
-            let outward = position.x * ahead.x + position.y * ahead.y;
-            let Pull { inward, axial } = self.models.planet.pull(*radius, up.z);
-            air.drag * density + (inward * up.dot(ahead) + axial * ahead.z)
-                - outward * self.models.planet.rotation_rate.powi(2)
-        } else {
-            -self.acceleration(time, state).dot(velocity) * flow.ground_speed.recip()
-        };
-        // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
-        let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, &flow);
-        let lift_coefficient = lift_coefficient * (lift_fade_over_cosine(*cos_gamma) * *cos_gamma);
-        let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
-        let load_factor = dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY);
-        let mach = flow.density_and_mach.map(|(_, mach)| mach);
-        Loads { altitude: flow.altitude, density, air_speed: *speed, mach, dynamic_pressure, deceleration, load_factor }
-    }
-
-    fn lift_and_drag_coefficient<S: Over<f64>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
-        let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
-        let Coefficients { lift, drag } =
-            self.coefficients::<false, _>(time, flow).unwrap_or(Coefficients { lift: S::zero(), drag: S::zero() });
-        (lift + lift_coefficient, drag + drag_coefficient)
-    }
-
-    /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
-    pub fn cos_squared_angle_to_air<S: Over<f64>>(&self, state: &PlanetFixed<S>) -> S {
-        let left = self.flow::<false, _>(state).directions.left;
-        left.dot(&left)
-    }
-
-    /// The angles at which the vehicle flies in a state: σ and α, rad.
-    pub fn angles(&self, time: f64, state: &PlanetFixed<f64>) -> [f64; 2] {
-        let flow = self.flow::<false, _>(state);
-        [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
-    }
-
-    /// The air in a state, as far as the atmosphere knows it.
-    pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
-        let altitude = self.models.planet.shape.altitude(&state.position);
-        let sample =
-            self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
-        // By the law of gases, denser air of the same temperature presses harder.
-        let factor = self.parameters.density;
-        AtmosphereSample {
-            density: sample.density * factor,
-            pressure: sample.pressure.map(|pressure| pressure * factor),
-            ..sample
-        }
-    }
 }
 
-/// Where a state points.
-struct Directions<S: nalgebra::Scalar> {
-    radius: S,
-    speed: S,
-    /// r̂.
-    up: Vector3<S>,
-    /// v̂; zero at rest.
-    ahead: Vector3<S>,
-    /// r̂ × v̂, of length cos γ.
-    left: Vector3<S>,
-    cos_gamma: S,
-}
-
-impl<S: Scalar> Directions<S> {
-    #[inline(always)]
-    fn of(position: &Vector3<S>, velocity: &Vector3<S>) -> Self {
-        // The three roots do not wait for each other.
-        let across = position.cross(velocity);
-        let (radius, speed, moment) = (length(position), length(velocity), length(&across));
-        let (over_radius, over_speed) = (reciprocal_or_one(radius), reciprocal_or_one(speed));
-        let over_both = over_radius * over_speed;
-        Self {
-            radius,
-            speed,
-            up: position.map(|component| component * over_radius),
-            ahead: velocity.map(|component| component * over_speed),
-            left: across.map(|component| component * over_both),
-            cos_gamma: moment * over_both,
-        }
-    }
-}
-
-/// The share of the lift that is left near the vertical, over cos γ: with x = min(cos γ/ε, 1), x³(10 - 15x + 6x²)/cos γ.
-///
-/// In vertical flight the plane of radius and velocity, from which the bank angle is measured, is undefined; lift that turns
-/// the flight down past the vertical would jump to the opposite side. The fade makes the equations smooth there,
-/// and is 1 outside the cone.
+/// A direction in a state, of length 1; of length 0 where there is none, and shorter than 1 across the velocity near the vertical.
 #[inline(always)]
-fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
-    let x = cos_gamma / LIFT_FADE_ANGLE;
-    let faded = x * x * (x * (x * 6.0 - 15.0) + 10.0) / LIFT_FADE_ANGLE;
-    let in_cone = cos_gamma.less_than(LIFT_FADE_ANGLE);
-    let full = S::select(in_cone, S::one(), cos_gamma).recip();
-    S::select(in_cone, faded, full)
+pub(crate) fn along<S: Scalar>(axis: Axis, state: &PlanetFixed<S>) -> Vector3<S> {
+    let Directions { up, ahead, left, cos_gamma, .. } = Directions::of(&state.position, &state.velocity);
+    match axis {
+        Axis::Velocity => ahead,
+        Axis::Radial => up,
+        Axis::Normal => left * lift_fade_over_cosine(cos_gamma),
+    }
 }
+
+/// A direction in a state, of length 1, if there is one.
+pub(crate) fn direction(axis: Axis, state: &PlanetFixed<f64>) -> Option<Vector3<f64>> {
+    let Directions { up, ahead, left, .. } = Directions::of(&state.position, &state.velocity);
+    match axis {
+        Axis::Velocity => ahead,
+        Axis::Radial => up,
+        Axis::Normal => left,
+    }
+    .try_normalize(NO_DIRECTION)
+}
+
+/// A part of a unit vector that is a rounding.
+const NO_DIRECTION: f64 = 1e-9;
 
 /// A state that moves along its rate of change: the derivative part of what is computed from it is a rate per second.
-pub fn moving(state: &[f64; 6], derivative: &[f64; 6]) -> [Dual64; 6] {
+pub fn moving<const N: usize>(state: &[f64; N], derivative: &[f64; N]) -> [Dual64; N] {
     std::array::from_fn(|i| Dual64::new(state[i], derivative[i]))
 }

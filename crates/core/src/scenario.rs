@@ -1,6 +1,14 @@
 //! The question: what flies where, from which state, until when, and how exactly.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+mod bounds;
+mod phase;
+
+pub use bounds::Bound;
+pub use phase::Phase;
+
+use bounds::out_of_bounds;
+
+use std::borrow::Cow;
 use std::fmt;
 
 use num_dual::Dual2_64;
@@ -8,92 +16,13 @@ use num_dual::Dual2_64;
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
 use crate::coordinates::PlanetFixed;
+use crate::event::{Condition, Direction, Engine, Event, Quantity};
+use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
-use crate::planet::{Gravity, Planet, Zonal};
+use crate::planet::Planet;
+use crate::propulsion::Axis;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
-
-/// The values that a number may have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// The least value.
-    pub minimum: f64,
-    /// Whether the least value itself is left out.
-    pub exclusive: bool,
-    /// The greatest value.
-    pub maximum: f64,
-}
-
-impl Bound {
-    /// Every finite number.
-    pub const FINITE: Self = Self::between(f64::MIN, f64::MAX);
-    /// mass, scale height, ballistic coefficient.
-    pub const POSITIVE: Self = Self::above(0.0, f64::MAX);
-    /// reference area, density and its factor, drag coefficient, eccentricity.
-    pub const NON_NEGATIVE: Self = Self::between(0.0, f64::MAX);
-    /// Speeds, m/s.
-    pub const SPEED: Self = Self::between(0.0, 1e6);
-    /// Components of a velocity relative to the rotating planet, m/s.
-    pub const VELOCITY: Self = Self::between(-1e6, 1e6);
-    /// Coordinates and altitudes, m.
-    pub const DISTANCE: Self = Self::between(-1e12, 1e12);
-    /// Radii of planets, m.
-    pub const PLANET_RADIUS: Self = Self::between(1.0, 1e12);
-    /// Distances from the planet's centre, m.
-    pub const RADIUS: Self = Self::above(0.0, 1e12);
-    /// Latitudes and flight-path angles, rad.
-    pub const QUARTER_TURN: Self = Self::between(-FRAC_PI_2, FRAC_PI_2);
-    /// The inclination, rad.
-    pub const HALF_TURN: Self = Self::between(0.0, PI);
-    /// Every other angle, rad.
-    pub const TURN: Self = Self::between(-TAU, TAU);
-    /// Gravitational parameters, m³/s², from that of a boulder on; the Sun's is 1.3e20.
-    pub const GRAVITATIONAL_PARAMETER: Self = Self::between(1e-6, 1e25);
-    /// Rotation rates, rad/s.
-    pub const ROTATION_RATE: Self = Self::between(-1.0, 1.0);
-    /// Coefficients of zonal harmonics.
-    pub const ZONAL_COEFFICIENT: Self = Self::between(-0.1, 0.1);
-    /// Components of the wind, m/s.
-    pub const WIND: Self = Self::between(-1e4, 1e4);
-    /// The time at which a flight ends, s.
-    pub const STOP_TIME: Self = Self::above(0.0, 1e9);
-    /// The relative tolerance of the integration.
-    pub const RELATIVE_TOLERANCE: Self = Self::between(1e-14, 1e-3);
-
-    const fn between(minimum: f64, maximum: f64) -> Self {
-        Self { minimum, exclusive: false, maximum }
-    }
-
-    const fn above(minimum: f64, maximum: f64) -> Self {
-        Self { minimum, exclusive: true, maximum }
-    }
-
-    /// Whether the value is one of them; no bound admits what is not finite.
-    pub fn admits(&self, value: f64) -> bool {
-        let above = if self.exclusive { value > self.minimum } else { value >= self.minimum };
-        above && value <= self.maximum
-    }
-
-    /// The same bound for numbers in another unit, `scale` times as large.
-    #[must_use]
-    pub fn scaled(self, scale: f64) -> Self {
-        Self { minimum: self.minimum * scale, maximum: self.maximum * scale, ..self }
-    }
-}
-
-impl fmt::Display for Bound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unbounded = |limit: f64| limit.abs() >= f64::MAX;
-        match (self.exclusive, unbounded(self.minimum), unbounded(self.maximum)) {
-            (_, true, true) => write!(f, "finite"),
-            (true, _, true) => write!(f, "greater than {}", self.minimum),
-            (true, _, false) => write!(f, "greater than {} and at most {}", self.minimum, Plain(self.maximum)),
-            (false, true, false) => write!(f, "at most {}", Plain(self.maximum)),
-            (false, false, true) => write!(f, "at least {}", self.minimum),
-            (false, false, false) => write!(f, "between {} and {}", Plain(self.minimum), Plain(self.maximum)),
-        }
-    }
-}
 
 /// A number as people write it: with an exponent where the digits would not fit.
 pub(crate) struct Plain(pub(crate) f64);
@@ -111,18 +40,30 @@ impl fmt::Display for Plain {
     }
 }
 
-/// When a flight ends at the latest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// When a flight ends: with the first of these.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// The altitude, m, along the radius vector, whose downward crossing ends the flight.
     pub altitude: f64,
     /// The time, s.
     pub time: f64,
+    /// The altitude, m, along the radius vector, whose upward crossing ends the flight.
+    pub ceiling: Option<f64>,
+    /// Conditions, each of which ends the flight.
+    pub when: Vec<Condition>,
 }
 
 impl Default for Stop {
     fn default() -> Self {
-        Self { altitude: 0.0, time: 10_000.0 }
+        Self { altitude: 0.0, time: 10_000.0, ceiling: None, when: Vec::new() }
+    }
+}
+
+impl Stop {
+    /// The ceiling, as a condition.
+    pub fn ceiling(&self) -> Option<Condition> {
+        let direction = Direction::Rising;
+        self.ceiling.map(|value| Condition { quantity: Quantity::Altitude, value, direction })
     }
 }
 
@@ -168,6 +109,10 @@ pub struct Case {
     pub vehicle: Vehicle,
     /// How it is flown.
     pub control: Control,
+    /// How it is heated, if that is wanted.
+    pub heating: Option<Heating>,
+    /// What happens on the way.
+    pub events: Vec<Event>,
     /// The state at t = 0.
     pub initial_state: PlanetFixed<f64>,
     /// When it ends.
@@ -191,13 +136,13 @@ enum Departure {
 }
 
 /// Something in a case that cannot be flown.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A number out of its bounds.
     #[error("{field} must be {bound}, got {value}")]
     OutOfBounds {
         /// Its place in the [`Case`].
-        field: &'static str,
+        field: Cow<'static, str>,
         /// The number.
         value: f64,
         /// What it may be.
@@ -246,8 +191,25 @@ pub enum Fault {
     #[error("needs a Mach number, and with it an atmosphere that has a temperature: us76, or a table with one")]
     NoTemperature {
         /// What needs it: its place in the [`Case`].
-        field: &'static str,
+        field: Cow<'static, str>,
     },
+    /// Time never falls.
+    #[error("is not for time, which never falls; use rises_through")]
+    TimeFalls {
+        /// The place of the condition in the [`Case`].
+        field: String,
+    },
+    /// The ceiling lies on the stop altitude or below.
+    #[error("must be greater than the stop altitude of {altitude} m, got {ceiling}")]
+    LowCeiling {
+        /// m.
+        ceiling: f64,
+        /// The stop altitude, m.
+        altitude: f64,
+    },
+    /// Heating without a nose.
+    #[error("is required: the heat flux at the stagnation point depends on it")]
+    NoNoseRadius,
     /// The initial acceleration overflows.
     #[error("the initial acceleration is not a finite number")]
     InfiniteAcceleration,
@@ -276,6 +238,8 @@ impl Scenario {
         faults.extend(planet_faults(&case.planet, &case.stop));
         faults.extend(state_faults(state));
         faults.extend(case.mach_faults());
+        faults.extend(case.condition_faults());
+        faults.extend((case.heating.is_some() && case.vehicle.nose_radius.is_none()).then_some(Fault::NoNoseRadius));
         if faults.is_empty() {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
@@ -318,14 +282,46 @@ impl Scenario {
 impl Case {
     /// What acts on the vehicle at the start.
     pub fn forces(&self) -> Forces {
-        let mut forces = Forces::new(self.models(), self.parameters());
+        let mut forces = Phase::first(self).forces(self);
         // Where no regime holds at the start, the flight says so.
         let _ = forces.settle(0.0, &self.initial_state);
         forces
     }
 
-    /// The models, as far as they hold no number of [`parameters`](Self::parameters).
+    /// The models at the start, as far as they hold no number of [`parameters`](Self::parameters).
     pub fn models(&self) -> Models {
+        self.models_of(&self.vehicle)
+    }
+
+    /// The numbers that may vary, beside the state, at the start.
+    pub fn parameters(&self) -> Parameters<f64> {
+        self.parameters_of(&self.vehicle)
+    }
+
+    /// Whether anything may lift the vehicle, or push it across its way, so that near the vertical something fades out.
+    pub(crate) fn may_lift(&self) -> bool {
+        let effects = self.events.iter().map(|event| &event.then);
+        self.vehicle.has_lift()
+            || effects.clone().any(|effect| effect.aerodynamics.as_ref().is_some_and(Aerodynamics::has_lift))
+            || effects.clone().any(|effect| effect.reference_area.is_some()) && self.vehicle.aerodynamics.has_lift()
+            || effects
+                .filter_map(|effect| effect.engine)
+                .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along == Axis::Normal))
+    }
+
+    /// Whether anything is watched on the way, beside the stop altitude and the formulas of the models.
+    pub(crate) fn is_watched(&self) -> bool {
+        !self.events.is_empty() || !self.stop.when.is_empty() || self.stop.ceiling.is_some()
+    }
+
+    /// The conditions that end the flight or let something happen, with their places in the case.
+    fn conditions(&self) -> impl Iterator<Item = (String, &Condition)> {
+        let events = self.events.iter().enumerate().map(|(index, event)| (format!("events.{index}.when"), &event.when));
+        events.chain(self.stop.when.iter().enumerate().map(|(index, when)| (format!("stop.when.{index}"), when)))
+    }
+
+    /// The models, with a vehicle in place of that of the start.
+    pub(crate) fn models_of(&self, vehicle: &Vehicle) -> Models {
         const NONE: Aerodynamics = Aerodynamics::Constant { lift_coefficient: 0.0, drag_coefficient: 0.0 };
         const NO_ANGLE: Command = Command::Constant(0.0);
         let atmosphere = match &self.atmosphere {
@@ -334,7 +330,7 @@ impl Case {
             }
             other => other.clone(),
         };
-        let aerodynamics = match &self.vehicle.aerodynamics {
+        let aerodynamics = match &vehicle.aerodynamics {
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => NONE,
             other => other.clone(),
         };
@@ -346,12 +342,16 @@ impl Case {
             wind: self.wind.clone(),
             aerodynamics,
             control: Control { bank_angle, angle_of_attack },
+            heating: self
+                .heating
+                .zip(vehicle.nose_radius)
+                .map(|(heating, nose_radius)| Stagnation::new(heating, nose_radius)),
         }
     }
 
-    /// The numbers that may vary, beside the state.
-    pub fn parameters(&self) -> Parameters<f64> {
-        let Vehicle { mass, reference_area, aerodynamics } = &self.vehicle;
+    /// The numbers that may vary, beside the state, with a vehicle in place of that of the start.
+    pub(crate) fn parameters_of(&self, vehicle: &Vehicle) -> Parameters<f64> {
+        let Vehicle { mass, reference_area, aerodynamics, .. } = vehicle;
         let [mass, reference_area, lift_coefficient, drag_coefficient] = match *aerodynamics {
             Aerodynamics::Constant { lift_coefficient, drag_coefficient } => {
                 [*mass, *reference_area, lift_coefficient, drag_coefficient]
@@ -379,12 +379,31 @@ impl Case {
             return Vec::new();
         }
         let Control { bank_angle, angle_of_attack } = &self.control;
-        let needs = [
-            ("vehicle.aerodynamics.type", self.vehicle.aerodynamics.is_by_mach()),
-            ("control.bank_angle.against", bank_angle.is_by_mach()),
-            ("control.angle_of_attack.against", angle_of_attack.is_by_mach()),
+        let needs: [(Cow<'static, str>, bool); 3] = [
+            ("vehicle.aerodynamics.type".into(), self.vehicle.aerodynamics.is_by_mach()),
+            ("control.bank_angle.against".into(), bank_angle.is_by_mach()),
+            ("control.angle_of_attack.against".into(), angle_of_attack.is_by_mach()),
         ];
-        needs.into_iter().filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
+        let conditions = self
+            .conditions()
+            .map(|(place, condition)| (format!("{place}.quantity").into(), condition.quantity == Quantity::Mach));
+        let effects = self.events.iter().enumerate().map(|(index, event)| {
+            let by_mach = event.then.aerodynamics.as_ref().is_some_and(Aerodynamics::is_by_mach);
+            (format!("events.{index}.then.aerodynamics.type").into(), by_mach)
+        });
+        let needs = needs.into_iter().chain(conditions).chain(effects);
+        needs.filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
+    }
+
+    /// What is wrong with conditions, beyond their numbers.
+    fn condition_faults(&self) -> Vec<Fault> {
+        let falls =
+            |condition: &Condition| condition.quantity == Quantity::Time && condition.direction == Direction::Falling;
+        let falling = self.conditions().filter(|(_, condition)| falls(condition));
+        let falling = falling.map(|(place, _)| Fault::TimeFalls { field: format!("{place}.falls_through") });
+        let altitude = self.stop.altitude;
+        let low = self.stop.ceiling.filter(|ceiling| *ceiling <= altitude);
+        falling.chain(low.map(|ceiling| Fault::LowCeiling { ceiling, altitude })).collect()
     }
 
     /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
@@ -430,59 +449,4 @@ pub fn state_faults(state: &PlanetFixed<f64>) -> Vec<Fault> {
         faults.push(Fault::TooFast { speed });
     }
     faults
-}
-
-fn out_of_bounds(case: &Case) -> Vec<Fault> {
-    let Case { planet, atmosphere, density_factor, wind, vehicle, control, stop, solver, .. } = case;
-    let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
-    let mut checks = vec![
-        ("planet.gravitational_parameter", planet.gravitational_parameter, Bound::GRAVITATIONAL_PARAMETER),
-        ("planet.equatorial_radius", equatorial_radius, Bound::PLANET_RADIUS),
-        ("planet.polar_radius", polar_radius, Bound::PLANET_RADIUS),
-        ("planet.rotation_rate", planet.rotation_rate, Bound::ROTATION_RATE),
-        ("density_factor", *density_factor, Bound::NON_NEGATIVE),
-        ("stop.altitude", stop.altitude, Bound::DISTANCE),
-        ("stop.time", stop.time, Bound::STOP_TIME),
-        ("solver.relative_tolerance", solver.relative_tolerance, Bound::RELATIVE_TOLERANCE),
-    ];
-    if let Gravity::Zonal(Zonal { coefficients: [j2, j3, j4] }) = planet.gravity {
-        checks.extend([
-            ("planet.gravity.j2", j2, Bound::ZONAL_COEFFICIENT),
-            ("planet.gravity.j3", j3, Bound::ZONAL_COEFFICIENT),
-            ("planet.gravity.j4", j4, Bound::ZONAL_COEFFICIENT),
-        ]);
-    }
-    if let Atmosphere::Exponential { surface_density, scale_height } = *atmosphere {
-        checks.extend([
-            ("atmosphere.surface_density", surface_density, Bound::NON_NEGATIVE),
-            ("atmosphere.scale_height", scale_height, Bound::POSITIVE),
-        ]);
-    }
-    if let Wind::Constant { east, north } = *wind {
-        checks.extend([("wind.east", east, Bound::WIND), ("wind.north", north, Bound::WIND)]);
-    }
-    checks.push(("vehicle.mass", vehicle.mass, Bound::POSITIVE));
-    match vehicle.aerodynamics {
-        Aerodynamics::Constant { lift_coefficient, drag_coefficient } => checks.extend([
-            ("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE),
-            ("vehicle.aerodynamics.lift_coefficient", lift_coefficient, Bound::FINITE),
-            ("vehicle.aerodynamics.drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
-        ]),
-        Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => checks.extend([
-            ("vehicle.aerodynamics.ballistic_coefficient", ballistic_coefficient, Bound::POSITIVE),
-            ("vehicle.aerodynamics.lift_to_drag", lift_to_drag, Bound::FINITE),
-        ]),
-        Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => {
-            checks.push(("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE));
-        }
-    }
-    let commands = [("control.bank_angle", &control.bank_angle), ("control.angle_of_attack", &control.angle_of_attack)];
-    checks.extend(commands.into_iter().filter_map(|(field, command)| match command {
-        Command::Constant(angle) => Some((field, *angle, Bound::TURN)),
-        Command::Schedule(_) => None,
-    }));
-    let fault = |(field, value, bound): (&'static str, f64, Bound)| {
-        (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound })
-    };
-    checks.into_iter().filter_map(fault).collect()
 }

@@ -4,20 +4,22 @@
 //! one step of Newton's method gives the derivatives of the time of the impact, and with it those of the state there. So it does where
 //! the formulas of the models change: as long as the change comes later, the flight moves on by the rates from before it.
 
+use std::array::from_fn;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::SVector;
 use num_dual::{Dual64, DualSVec64, jacobian};
 
 use crate::atmosphere::Atmosphere;
-use crate::coordinates::FlightPath;
+use crate::coordinates::{FlightPath, PlanetFixed};
+use crate::event::{Condition, Effect, Engine, Quantity};
 use crate::integrate::{System, follow};
-use crate::motion::{Cartesian, Forces, Formulation, Parameters, Regime, Spherical, moving};
+use crate::motion::{self, Burn, Cartesian, Forces, Formulation, Parameters, Regime, Spherical, moving};
+use crate::propulsion::Impulse;
 use crate::scalar::Scalar;
-use crate::scenario::{Case, Equations};
+use crate::scenario::{Case, Equations, Phase};
 use crate::simulate::SimulationError;
-use crate::trajectory::{Leg, Termination, Trajectory};
-use crate::vehicle::Aerodynamics;
+use crate::trajectory::{Flown, Happening, Termination, Trajectory};
 
 /// How a quantity changes with the numbers of a case, each by itself: SI units and radians over SI units and radians.
 ///
@@ -66,6 +68,9 @@ type Dual = DualSVec64<INPUTS>;
 /// slope has none: what is computed there is rounding.
 const UNDEFINED: f64 = 1e-6;
 
+/// A quantity this near the value of a condition, relative to it or to 1, has met it by moving there and not by a jump.
+const ON_VALUE: f64 = 1e-6;
+
 /// The derivatives of the arrival of a flight.
 ///
 /// # Errors
@@ -84,7 +89,11 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
             std::array::from_fn(|input| slopes[(row, input)]);
         let only = |has: bool, slope: f64| if has { slope } else { f64::NAN };
         Gradient {
-            mass: if has.mass { mass } else { 0.0 },
+            mass: match has.mass {
+                true => mass,
+                false if has.thrust => f64::NAN,
+                false => 0.0,
+            },
             reference_area: only(has.mass, reference_area),
             lift_coefficient: only(has.mass, lift_coefficient),
             drag_coefficient: only(has.mass, drag_coefficient),
@@ -112,13 +121,16 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
 struct Numbers {
     /// Mass, area and coefficients, and not ratios of them.
     mass: bool,
+    /// Any, by which the mass matters beside the ratios.
+    thrust: bool,
     surface_density: Option<f64>,
 }
 
 impl Numbers {
     fn of(case: &Case) -> Self {
         Self {
-            mass: !matches!(case.vehicle.aerodynamics, Aerodynamics::Ballistic { .. }),
+            mass: !case.vehicle.is_ballistic(),
+            thrust: case.events.iter().any(|event| event.then.engine.is_some()),
             surface_density: match case.atmosphere {
                 Atmosphere::Exponential { surface_density, .. } => Some(surface_density),
                 Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => None,
@@ -154,74 +166,240 @@ type Outputs = SVector<Dual, 5>;
 fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool) -> Result<Outputs, SimulationError> {
     let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = *numbers;
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
-    let forces = Forces::new(flight.case.models(), parameters);
     let start = FlightPath::from(start);
     match flight.case.solver.equations {
-        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, forces, Cartesian, &start, interrupt),
-        Equations::Spherical => arrival_of::<Spherical, _>(flight, forces, Spherical, &start, interrupt),
+        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &parameters, Cartesian, &start, interrupt),
+        Equations::Spherical => arrival_of::<Spherical, _>(flight, &parameters, Spherical, &start, interrupt),
     }
 }
 
-fn arrival_of<F: Formulation, M: System<Dual, 6>>(
+fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
     flight: &Trajectory,
-    mut forces: Forces<Dual>,
+    parameters: &Parameters<Dual>,
     formulation: impl Fn(Forces<Dual>) -> M,
     start: &FlightPath<Dual>,
     interrupt: &AtomicBool,
 ) -> Result<Outputs, SimulationError> {
-    let mut state = F::coordinates(&start.to_planet_fixed());
-    forces.enter(flight.regime);
+    let Flown { legs, happenings, end, arrival, .. } = &flight.flown;
+    let mut state = F::coordinates(&start.to_planet_fixed(), Dual::from(0.0));
+    let mut stage = Stage::first(flight, parameters);
+    let mut forces = stage.forces(flight.flown.start.regime);
     let mut motion = formulation(forces.clone());
-    for Leg { step, regime } in &flight.legs {
+    let mut happenings = happenings.iter().peekable();
+    for leg in legs {
+        let (time, length) = (leg.start_time(), leg.end_time() - leg.start_time());
         if interrupt.load(Ordering::Relaxed) {
-            return Err(SimulationError::Interrupted { time: step.start_time });
+            return Err(SimulationError::Interrupted { time });
         }
-        if *regime != forces.regime() {
-            let rates = motion.derivative(step.start_time.into(), &state);
-            let delay = turning_delay::<F>(flight, &forces, *regime, step.start_time, &state, &rates);
-            forces.enter(*regime);
-            motion = formulation(forces.clone());
+        if (leg.phase, leg.regime) != (stage.phase, forces.regime()) {
+            let now: Vec<_> =
+                std::iter::from_fn(|| happenings.next_if(|happening| happening.before.time <= time)).collect();
+            let place = Place { time, rates: motion.derivative(time.into(), &state), state };
+            let delay = turning_delay::<F>(&stage, &forces, &now, leg.regime, &place);
             // So long the rates before the turn hold, and not yet those after it.
-            let next = motion.derivative(step.start_time.into(), &state);
-            state = std::array::from_fn(|i| state[i] + (rates[i] - next[i]) * delay);
+            state = from_fn(|i| state[i] + place.rates[i] * delay);
+            let before = now.first().map_or(leg.phase, |happening| happening.before.phase);
+            if stage.phase != before {
+                stage = stage.burnt_out(before, delay);
+            }
+            for happening in now {
+                stage = stage.after(happening, delay);
+                state = push::<F>(&flight.case.events[happening.event].then, &state);
+            }
+            forces = stage.forces(leg.regime);
+            motion = formulation(forces.clone());
+            let next = motion.derivative(time.into(), &state);
+            state = from_fn(|i| state[i] - next[i] * delay);
         }
-        state = follow(&motion, &state, step);
+        state = follow(&motion, &state, time, length);
     }
-    let mut time = Dual::from(flight.end_time());
-    if flight.termination() == Termination::SurfaceImpact {
-        let rates = motion.derivative(time, &state);
-        let shape = flight.case.planet.shape;
-        let moving = moving(&state.map(Scalar::value), &rates.map(Scalar::value));
-        let climb = shape.altitude(&F::planet_fixed(&moving).position).eps;
-        let delay = delay(shape.altitude(&F::planet_fixed(&state).position), climb);
-        time += delay;
-        state = std::array::from_fn(|i| state[i] + rates[i] * delay);
+    let place = Place { time: end.time, rates: motion.derivative(end.time.into(), &state), state };
+    let condition = match arrival.termination {
+        Termination::TimeLimit => None,
+        Termination::SurfaceImpact => Some(Quantity::Altitude),
+        Termination::AtmosphereExit => flight.case.stop.ceiling().map(|condition| condition.quantity),
+        Termination::Condition(index) => flight.case.stop.when.get(index).map(|condition| condition.quantity),
+    };
+    let delay = condition.map_or(Dual::from(0.0), |quantity| condition_delay::<F>(&stage, &forces, quantity, &place));
+    state = from_fn(|i| state[i] + place.rates[i] * delay);
+    for happening in happenings {
+        state = push::<F>(&flight.case.events[happening.event].then, &state);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&state));
-    Ok([time, longitude, geocentric_latitude, speed, flight_path_angle].into())
+    Ok([delay + end.time, longitude, geocentric_latitude, speed, flight_path_angle].into())
 }
 
-/// How much later the models turn to another regime as the numbers vary; not at all where they turn by the time.
-fn turning_delay<F: Formulation>(
-    flight: &Trajectory,
-    forces: &Forces<Dual>,
-    next: Regime,
+/// A state with its rates at a time, s, where something turns.
+struct Place {
     time: f64,
-    state: &[Dual; 6],
-    rates: &[Dual; 6],
+    state: [Dual; 6],
+    rates: [Dual; 6],
+}
+
+impl Place {
+    /// The values of the state, moving along the flow.
+    fn moving<F: Formulation<6>>(&self) -> PlanetFixed<Dual64> {
+        F::planet_fixed(&moving(&self.state.map(Scalar::value), &self.rates.map(Scalar::value)))
+    }
+}
+
+/// How much later a turn comes as the numbers vary; not at all where it comes by the time.
+fn turning_delay<F: Formulation<6>>(
+    stage: &Stage,
+    forces: &Forces<Dual>,
+    now: &[&Happening],
+    next: Regime,
+    place: &Place,
 ) -> Dual {
-    let values = state.map(Scalar::value);
-    let motion = flight.motion(forces.regime());
-    let Some(switch) = motion.forces().first_to_turn(next, time, &F::planet_fixed(&values)) else {
+    let mut conditions = now.iter().map(|happening| stage.flight.case.events[happening.event].when);
+    // A condition that was met by a jump was so because of another.
+    let meets = |Condition { quantity, value, .. }: &Condition| {
+        let off = forces.quantity(*quantity, place.time.into(), &F::planet_fixed(&place.state)) - *value;
+        off.value().abs() <= ON_VALUE * value.abs().max(1.0)
+    };
+    if let Some(condition) = conditions.find(meets) {
+        return condition_delay::<F>(stage, forces, condition.quantity, place);
+    }
+    if let Some(burnout) = stage.burnout().filter(|burnout| burnout.value() <= place.time) {
+        return burnout - burnout.value();
+    }
+    let plain = stage.plain_forces(forces.regime());
+    let values = F::planet_fixed(&place.state.map(Scalar::value));
+    let Some(switch) = plain.first_to_turn(next, place.time, &values) else {
         return Dual::from(0.0);
     };
-    let moving = F::planet_fixed(&moving(&values, &rates.map(Scalar::value)));
-    let rate = motion.forces().readings(Dual64::new(time, 1.0), &moving)[switch as usize].eps;
-    delay(forces.readings(Dual::from(time), &F::planet_fixed(state))[switch as usize], rate)
+    let rate = plain.readings(Dual64::new(place.time, 1.0), &place.moving::<F>())[switch as usize].eps;
+    let readings = forces.readings(Dual::from(place.time), &F::planet_fixed(&place.state));
+    delay(readings[switch as usize], rate)
+}
+
+/// How much later a quantity passes the value that it has; not at all where it is the time.
+fn condition_delay<F: Formulation<6>>(stage: &Stage, forces: &Forces<Dual>, quantity: Quantity, place: &Place) -> Dual {
+    if quantity == Quantity::Time {
+        return Dual::from(0.0);
+    }
+    let plain = stage.plain_forces(forces.regime());
+    let rate = plain.quantity(quantity, Dual64::new(place.time, 1.0), &place.moving::<F>()).eps;
+    delay(forces.quantity(quantity, place.time.into(), &F::planet_fixed(&place.state)), rate)
 }
 
 /// How much later a quantity passes the value that it has: a step of Newton's method, -q/q̇, of value zero.
 fn delay(quantity: Dual, rate: f64) -> Dual {
     -(quantity - quantity.value()) * rate.recip()
+}
+
+/// The state after the impulse of an effect, if it has one.
+fn push<F: Formulation<6>>(effect: &Effect, state: &[Dual; 6]) -> [Dual; 6] {
+    let Some(Impulse { along, speed_change }) = effect.impulse else { return *state };
+    let state = F::planet_fixed(state);
+    let velocity = state.velocity + motion::along(along, &state) * Dual::from(speed_change);
+    F::coordinates(&PlanetFixed { velocity, ..state }, Dual::from(0.0))
+}
+
+/// A phase of a flight, in numbers that vary.
+struct Stage<'a> {
+    flight: &'a Trajectory,
+    /// The number of the phase.
+    phase: usize,
+    parameters: Parameters<Dual>,
+    /// When it began, s.
+    since: Dual,
+    /// Then, kg.
+    mass: Dual,
+    /// Left to burn then, kg.
+    propellant: Option<Dual>,
+}
+
+impl<'a> Stage<'a> {
+    fn first(flight: &'a Trajectory, parameters: &Parameters<Dual>) -> Self {
+        let vehicle = &flight.case.vehicle;
+        let mass = if vehicle.is_ballistic() { Dual::from(vehicle.mass) } else { parameters.mass };
+        Self { flight, phase: 0, parameters: *parameters, since: Dual::from(0.0), mass, propellant: None }
+    }
+
+    fn as_flown(&self) -> &'a Phase {
+        &self.flight.flown.phases[self.phase]
+    }
+
+    fn mass_flow(&self) -> f64 {
+        self.as_flown().thrust.map_or(0.0, |thrust| thrust.mass_flow())
+    }
+
+    /// Burnt up to a time, kg.
+    fn burnt(&self, time: Dual) -> Dual {
+        (time - self.since) * self.mass_flow()
+    }
+
+    /// When the propellant is spent, s.
+    fn burnout(&self) -> Option<Dual> {
+        Some(self.since + self.propellant? / self.mass_flow())
+    }
+
+    fn forces(&self, regime: Regime) -> Forces<Dual> {
+        let over_mass = self.mass.recip();
+        let burn = self.as_flown().thrust.map(|thrust| Burn {
+            along: thrust.along,
+            since: self.since,
+            acceleration: over_mass * thrust.force,
+            flow: over_mass * thrust.mass_flow(),
+        });
+        let models = self.flight.case.models_of(&self.as_flown().vehicle);
+        let mut forces = Forces::new(models, self.parameters).burning(burn);
+        forces.enter(regime);
+        forces
+    }
+
+    /// The same without derivatives.
+    fn plain_forces(&self, regime: Regime) -> Forces {
+        let mut forces = self.as_flown().forces(&self.flight.case);
+        forces.enter(regime);
+        forces
+    }
+
+    /// The stage after the propellant is spent.
+    fn burnt_out(self, phase: usize, delay: Dual) -> Self {
+        let time = delay + self.flight.flown.phases[phase].since;
+        let mass = self.mass - self.propellant.unwrap_or(Dual::from(0.0));
+        Self { phase, since: time, propellant: None, ..self.with_mass(mass) }
+    }
+
+    /// The stage after an event.
+    fn after(self, happening: &Happening, delay: Dual) -> Self {
+        let effect = &self.flight.case.events[happening.event].then;
+        if effect.is_none() {
+            return self;
+        }
+        let time = delay + happening.before.time;
+        let burnt = self.burnt(time);
+        let mass = effect.mass.map_or(self.mass - burnt, Dual::from);
+        let propellant = match effect.engine {
+            None => self.propellant.map(|propellant| propellant - burnt),
+            Some(Engine::On(thrust)) => thrust.propellant.map(Dual::from),
+            Some(Engine::Off) => None,
+        };
+        let mut next = Self { phase: happening.after.phase, since: time, propellant, ..self.with_mass(mass) };
+        let vehicle = &next.as_flown().vehicle;
+        let as_flown = self.flight.case.parameters_of(vehicle);
+        let ballistic = vehicle.is_ballistic();
+        if effect.aerodynamics.is_some() {
+            next.parameters.lift_coefficient = as_flown.lift_coefficient.into();
+            next.parameters.drag_coefficient = as_flown.drag_coefficient.into();
+            next.parameters.mass = if ballistic { as_flown.mass.into() } else { mass };
+        }
+        if effect.reference_area.is_some() || effect.aerodynamics.is_some() && (ballistic || self.was_ballistic()) {
+            next.parameters.reference_area = as_flown.reference_area.into();
+        }
+        next
+    }
+
+    fn was_ballistic(&self) -> bool {
+        self.as_flown().vehicle.is_ballistic()
+    }
+
+    /// The same vehicle of another mass, kg.
+    fn with_mass(&self, mass: Dual) -> Self {
+        let of_parameters = if self.was_ballistic() { self.parameters.mass * mass * self.mass.recip() } else { mass };
+        Self { parameters: Parameters { mass: of_parameters, ..self.parameters }, mass, ..*self }
+    }
 }

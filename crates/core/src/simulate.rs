@@ -1,6 +1,7 @@
 //! The flight: from a scenario to a trajectory.
 
 mod abreast;
+mod alarms;
 mod descent;
 mod extremes;
 mod flight;
@@ -11,11 +12,12 @@ pub use abreast::arrivals;
 
 use std::sync::atomic::AtomicBool;
 
+use crate::integrate::Step;
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
-use crate::scenario::{Equations, Plain, Scenario};
-use crate::trajectory::{Arrival, Leg, Trajectory};
+use crate::scenario::{Equations, Phase, Plain, Scenario};
+use crate::trajectory::{Arrival, Flown, Leg, LegStep, Trajectory};
 use extremes::Extremes;
-use flight::Flight;
+use flight::{Flight, Log};
 use passage::Passage;
 
 /// Why a flight could not be finished.
@@ -60,6 +62,12 @@ pub enum SimulationError {
         /// What switches.
         switch: Switch,
     },
+    /// The thrust has burnt the vehicle up.
+    #[error("by t = {} s the thrust has burnt all the mass that there was", Plain(*.time))]
+    NothingLeft {
+        /// The instant reached, s.
+        time: f64,
+    },
     /// The flag was raised.
     #[error("interrupted at t = {} s", Plain(*.time))]
     Interrupted {
@@ -83,67 +91,85 @@ fn name(switch: Switch) -> &'static str {
         Switch::Mach | Switch::TableAngleOfAttack => "the table of aerodynamics",
         Switch::BankAngle => "the schedule of the bank angle",
         Switch::AngleOfAttack => "the schedule of the angle of attack",
+        Switch::Radiation => "the radiation of the air",
     }
 }
 
-/// Flies the scenario until it crosses the stop altitude downwards or its time is over.
+/// Flies the scenario until it crosses the stop altitude downwards, its time is over, or a condition for its end is met.
 ///
 /// `interrupt` is looked at before every step; once it is true, the flight ends with an error.
 ///
 /// # Errors
-/// When the flight needs too many or too small steps, when it reaches a singularity of the spherical equations, and when interrupted.
+/// When the flight needs too many or too small steps, when it reaches a singularity of the spherical equations, when thrust burns all
+/// of the vehicle, and when interrupted.
 pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajectory, SimulationError> {
-    let forces = scenario.case().forces();
-    match scenario.case().solver.equations {
-        Equations::Cartesian => record(scenario, Cartesian(forces), interrupt),
-        Equations::Spherical => record(scenario, Spherical(forces), interrupt),
+    let case = scenario.case();
+    match (case.solver.equations, case.heating) {
+        (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), LegStep::Plain, interrupt),
+        (Equations::Spherical, None) => record(scenario, Spherical(case.forces()), LegStep::Plain, interrupt),
+        (Equations::Cartesian, Some(_)) => record(scenario, Cartesian(case.forces()), LegStep::Heated, interrupt),
+        (Equations::Spherical, Some(_)) => record(scenario, Spherical(case.forces()), LegStep::Heated, interrupt),
     }
 }
 
-/// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and allocates no memory.
+/// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and, but for events, allocates no memory.
 ///
 /// # Errors
 /// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
 pub fn arrival(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Arrival, SimulationError> {
-    let forces = scenario.case().forces();
-    match scenario.case().solver.equations {
-        Equations::Cartesian => fly(scenario, &mut Flight::start(scenario, Cartesian(forces), interrupt)?, |_| Ok(())),
-        Equations::Spherical => fly(scenario, &mut Flight::start(scenario, Spherical(forces), interrupt)?, |_| Ok(())),
+    fn end<F: Formulation<N>, const N: usize>(
+        scenario: &Scenario,
+        motion: F,
+        interrupt: &AtomicBool,
+    ) -> Result<Arrival, SimulationError> {
+        fly(&mut Flight::start(scenario, motion, interrupt)?, |_| Ok(()))
+    }
+    let case = scenario.case();
+    match (case.solver.equations, case.heating) {
+        (Equations::Cartesian, None) => end::<_, 6>(scenario, Cartesian(case.forces()), interrupt),
+        (Equations::Spherical, None) => end::<_, 6>(scenario, Spherical(case.forces()), interrupt),
+        (Equations::Cartesian, Some(_)) => end::<_, 7>(scenario, Cartesian(case.forces()), interrupt),
+        (Equations::Spherical, Some(_)) => end::<_, 7>(scenario, Spherical(case.forces()), interrupt),
     }
 }
 
-fn record<F: Formulation>(
+fn record<F: Formulation<N>, const N: usize>(
     scenario: &Scenario,
     motion: F,
+    keep: impl Fn(Step<N>) -> LegStep,
     interrupt: &AtomicBool,
 ) -> Result<Trajectory, SimulationError> {
+    let case = scenario.case();
     let mut flight = Flight::start(scenario, motion, interrupt)?;
     let mut legs = Vec::with_capacity(TYPICAL_STEPS);
-    let mut extremes = Extremes::new(&flight.motion, &flight.integrator, scenario.case().vehicle.has_lift())?;
-    let first_regime = flight.motion.forces().regime();
-    let arrival = fly(scenario, &mut flight, |passage| {
+    let mut extremes = Extremes::new(&flight.motion, &flight.integrator, case.may_lift())?;
+    let start = flight.instant();
+    let arrival = fly(&mut flight, |passage| {
         extremes.observe(passage)?;
-        legs.push(Leg { step: passage.step.clone(), regime: passage.motion.forces().regime() });
+        let regime = passage.motion.forces().regime();
+        legs.push(Leg { step: keep(passage.step.clone()), phase: passage.phase, regime });
         Ok(())
     })?;
-    let case = scenario.case().clone();
-    let start = F::planet_fixed(&F::coordinates(&case.initial_state));
-    let regimes = [first_regime, flight.motion.forces().regime()];
-    Ok(Trajectory::new(case, start, regimes, legs, arrival, extremes.peaks, extremes.warnings))
+    let end = flight.instant();
+    extremes.end(flight.motion.forces(), &end)?;
+    let Extremes { peaks, mut warnings, .. } = extremes;
+    let Log { mut phases, happenings, warnings: others } = flight.log;
+    phases.insert(0, Phase::first(case));
+    warnings.extend(others);
+    Ok(Trajectory::new(case.clone(), Flown { start, legs, phases, happenings, end, arrival, peaks, warnings }))
 }
 
 /// Flies to the end and shows every step on the way.
-fn fly<F: Formulation>(
-    scenario: &Scenario,
-    flight: &mut Flight<F>,
-    mut observe: impl FnMut(&Passage<F>) -> Result<(), SimulationError>,
+fn fly<F: Formulation<N>, const N: usize>(
+    flight: &mut Flight<F, N>,
+    mut observe: impl FnMut(&Passage<F, N>) -> Result<(), SimulationError>,
 ) -> Result<Arrival, SimulationError> {
-    if scenario.ends_at_start() {
-        return Ok(flight.at_start());
+    if let Some(arrival) = flight.begin()? {
+        return Ok(arrival);
     }
     loop {
         let step = flight.advance()?;
-        if let Some(arrival) = flight.pass(step, &mut observe)? {
+        if let Some(arrival) = flight.pass(&step, &mut observe)? {
             return Ok(arrival);
         }
     }

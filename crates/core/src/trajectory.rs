@@ -1,10 +1,20 @@
 //! The answer: how the flight ended, its extremes, and its state at any time.
 
+mod leg;
+mod sampling;
+
+pub use sampling::{Sampling, TooManyInstants};
+
+pub(crate) use leg::{Leg, LegStep, Motion};
+
+use leg::LegInterpolant;
+
 use crate::atmosphere::AtmosphereSample;
 use crate::coordinates::{FlightPath, GreatCircle, Inertial, PlanetFixed, latitude_and_altitude};
-use crate::integrate::{Interpolant, Statistics, Step};
-use crate::motion::{Cartesian, Forces, Formulation, Loads, Regime, Spherical};
-use crate::scenario::{Case, Equations};
+use crate::heating;
+use crate::integrate::Statistics;
+use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical};
+use crate::scenario::{Case, Equations, Phase};
 
 pub use crate::motion::Lookup;
 
@@ -15,6 +25,10 @@ pub enum Termination {
     SurfaceImpact,
     /// The stop time was reached.
     TimeLimit,
+    /// The condition of this place in the list was met.
+    Condition(usize),
+    /// The ceiling was crossed upwards.
+    AtmosphereExit,
 }
 
 /// Where, when and why a flight ended.
@@ -26,6 +40,8 @@ pub struct Arrival {
     pub time: f64,
     /// Place and motion then.
     pub state: PlanetFixed<f64>,
+    /// J/m², where heating was asked for.
+    pub heat_load: Option<f64>,
     /// What the integration cost.
     pub statistics: Statistics,
 }
@@ -54,6 +70,23 @@ pub struct Peaks {
     pub altitude: Peak,
     /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
     pub mach: Option<Peak>,
+    /// Of the heating, where it is asked for.
+    pub heating: Option<HeatingPeaks>,
+}
+
+/// The peaks of the heating at the stagnation point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeatingPeaks {
+    /// By convection, W/m².
+    pub convective_heat_flux: Peak,
+    /// By radiation, W/m².
+    pub radiative_heat_flux: Peak,
+    /// Both together, W/m².
+    pub heat_flux: Peak,
+    /// J/m²; at the end.
+    pub heat_load: Peak,
+    /// K; with the heat flux.
+    pub wall_temperature: Peak,
 }
 
 /// Something about a flight that its user should know.
@@ -77,27 +110,46 @@ pub enum Warning {
         /// Whether the flight lies above the edge.
         above: bool,
     },
+    /// At the peak of its flux a correlation was asked for more than it was made for.
+    OutsideRange {
+        /// Whose.
+        correlation: &'static str,
+        /// What lies outside.
+        quantity: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// Its value.
+        value: f64,
+        /// Of the correlation, from and to.
+        range: [f64; 2],
+        /// s.
+        time: f64,
+    },
+    /// The propellant was spent, and the thrust with it.
+    PropellantSpent {
+        /// s.
+        time: f64,
+    },
+    /// An impulse had no direction: along a velocity of none, or across the vertical.
+    NoDirection {
+        /// The number of its event.
+        event: usize,
+        /// s.
+        time: f64,
+    },
 }
 
-/// The instants at which a trajectory is wanted; its start and its end always belong to them.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Sampling {
-    /// So many a step, the last at its end: many where the motion is fast, few where it is slow.
-    PerStep(usize),
-    /// Every so many seconds.
-    Interval(f64),
-    /// So many, evenly in time, both ends included.
-    Count(usize),
-    /// These, ascending, in s; those after the end are dropped.
-    Times(Vec<f64>),
-}
-
-/// The flight asks for more instants than allowed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the flight gives more than the {limit} rows allowed")]
-pub struct TooManyInstants {
-    /// The limit.
-    pub limit: usize,
+impl Warning {
+    /// When, s.
+    pub fn time(&self) -> f64 {
+        match *self {
+            Self::LiftFadedNearVertical { time }
+            | Self::OutsideTable { time, .. }
+            | Self::OutsideRange { time, .. }
+            | Self::PropellantSpent { time }
+            | Self::NoDirection { time, .. } => time,
+        }
+    }
 }
 
 /// The state and the loads at an instant.
@@ -134,180 +186,213 @@ pub struct FlightPoint {
     pub downrange: Option<f64>,
     /// To the right of that great circle, m.
     pub crossrange: Option<f64>,
+    /// kg.
+    pub mass: f64,
+    /// Into the stagnation point since the start, J/m², where heating is asked for.
+    pub heat_load: Option<f64>,
+    /// At which the wall radiates what it gets, K.
+    pub wall_temperature: Option<f64>,
+}
+
+/// An event that happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EventPoint {
+    /// Its place in the list of the case.
+    pub event: usize,
+    /// At its instant, before its effect.
+    pub before: FlightPoint,
+    /// At its instant, after its effect.
+    pub after: FlightPoint,
 }
 
 impl FlightPoint {
     /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
-        let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor } = self.loads;
+        let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor, heat_flux } =
+            self.loads;
         let path: [f64; 6] = self.flight_path.into();
         let loads = [altitude, density, air_speed, dynamic_pressure, deceleration, load_factor];
         let angles = [self.bank_angle, self.angle_of_attack, self.inertial_flight_path_angle];
         let rest = [self.geodetic_altitude, self.inertial_speed, self.specific_energy];
-        let known = [mach, self.temperature, self.pressure, self.speed_of_sound].into_iter().flatten();
+        let heat = [heat_flux.map(|flux| flux.total()), self.heat_load, self.wall_temperature];
+        let known = [mach, self.temperature, self.pressure, self.speed_of_sound].into_iter().chain(heat).flatten();
         let always = path.into_iter().chain(loads).chain(angles).chain(rest);
         always.chain(known).all(f64::is_finite)
     }
 }
 
-/// A step of a flight, and the regime of its models during it.
-#[derive(Clone, Debug)]
-pub(crate) struct Leg {
-    pub(crate) step: Step<6>,
+/// An instant of a flight, and what holds then.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant {
+    pub(crate) time: f64,
+    pub(crate) state: PlanetFixed<f64>,
+    pub(crate) heat_load: Option<f64>,
+    /// The number of the phase.
+    pub(crate) phase: usize,
     pub(crate) regime: Regime,
+}
+
+/// An event that happened, on both sides of its effect.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Happening {
+    pub(crate) event: usize,
+    pub(crate) before: Instant,
+    pub(crate) after: Instant,
 }
 
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     pub(crate) case: Case,
-    start: PlanetFixed<f64>,
-    /// That in which the flight starts.
-    pub(crate) regime: Regime,
-    pub(crate) legs: Vec<Leg>,
-    /// That into which it would go on.
-    last_regime: Regime,
-    arrival: Arrival,
-    peaks: Peaks,
-    warnings: Vec<Warning>,
+    pub(crate) flown: Flown,
     great_circle: Option<GreatCircle>,
 }
 
+/// What a flight leaves behind.
+#[derive(Clone, Debug)]
+pub(crate) struct Flown {
+    pub(crate) start: Instant,
+    pub(crate) legs: Vec<Leg>,
+    /// One more than there were events that changed anything.
+    pub(crate) phases: Vec<Phase>,
+    pub(crate) happenings: Vec<Happening>,
+    /// Into which it would go on.
+    pub(crate) end: Instant,
+    pub(crate) arrival: Arrival,
+    pub(crate) peaks: Peaks,
+    pub(crate) warnings: Vec<Warning>,
+}
+
 impl Trajectory {
-    pub(crate) fn new(
-        case: Case,
-        start: PlanetFixed<f64>,
-        [regime, last_regime]: [Regime; 2],
-        legs: Vec<Leg>,
-        arrival: Arrival,
-        peaks: Peaks,
-        warnings: Vec<Warning>,
-    ) -> Self {
+    pub(crate) fn new(case: Case, flown: Flown) -> Self {
         let great_circle = GreatCircle::of(&case.initial_state);
-        Self { case, start, regime, legs, last_regime, arrival, peaks, warnings, great_circle }
+        let mut flight = Self { case, flown, great_circle };
+        let ranges = flight.outside_ranges();
+        flight.flown.warnings.extend(ranges);
+        flight.flown.warnings.sort_by(|a, b| a.time().total_cmp(&b.time()));
+        flight
+    }
+
+    /// For what the correlations of the heat flux were not made, at the peaks of their fluxes.
+    fn outside_ranges(&self) -> Vec<Warning> {
+        let (Some(heating), Some(peaks)) = (self.case.heating, self.peaks().heating) else { return Vec::new() };
+        let nose_radius = self.case.vehicle.nose_radius.unwrap_or_default();
+        let of_peak = |peak: Peak, range: heating::Range| {
+            let Loads { density, air_speed, .. } = self.at(peak.time).loads;
+            let quantities = [
+                ("speed relative to the air", "m/s", air_speed, range.speed),
+                ("density", "kg/m³", density, range.density),
+                ("stagnation pressure", "Pa", density * air_speed * air_speed, range.pressure),
+                ("nose radius", "m", nose_radius, range.nose_radius),
+            ];
+            let outside = |value: f64, [least, greatest]: [f64; 2]| value < least || value > greatest;
+            let outside =
+                quantities.into_iter().filter(move |(.., value, range)| peak.value > 0.0 && outside(*value, *range));
+            outside.map(move |(quantity, unit, value, of)| {
+                let (correlation, time) = (range.correlation, peak.time);
+                Warning::OutsideRange { correlation, quantity, unit, value, range: of, time }
+            })
+        };
+        let convective = of_peak(peaks.convective_heat_flux, heating.convective.range());
+        convective.chain(of_peak(peaks.radiative_heat_flux, heating.radiative.range())).collect()
     }
 
     /// How the flight ended.
     pub fn termination(&self) -> Termination {
-        self.arrival.termination
+        self.flown.arrival.termination
     }
 
     /// The greatest values over the flight.
     pub fn peaks(&self) -> &Peaks {
-        &self.peaks
+        &self.flown.peaks
     }
 
     /// What the user should know.
     pub fn warnings(&self) -> &[Warning] {
-        &self.warnings
+        &self.flown.warnings
     }
 
     /// What the integration cost.
     pub fn statistics(&self) -> Statistics {
-        self.arrival.statistics
+        self.flown.arrival.statistics
     }
 
     /// When the flight ended, s.
     pub fn end_time(&self) -> f64 {
-        self.arrival.time
+        self.flown.arrival.time
     }
 
     /// Where and how it ended.
     pub fn arrival(&self) -> &Arrival {
-        &self.arrival
+        &self.flown.arrival
     }
 
-    /// The initial state.
+    /// The initial state, as given: before what happens at t = 0.
     pub fn initial(&self) -> FlightPoint {
-        self.point(&self.forces(self.regime), 0.0, &self.start)
+        self.point_of(&self.flown.start)
     }
 
-    /// The final state.
+    /// The final state, after what happens then.
     pub fn last(&self) -> FlightPoint {
-        self.point(&self.forces(self.last_regime), self.arrival.time, &self.arrival.state)
+        self.point_of(&self.flown.end)
     }
 
-    /// The state at a time, s; before the start it is the initial one, after the end the final one.
+    /// The events that happened, in order.
+    pub fn events(&self) -> impl Iterator<Item = EventPoint> {
+        let point = |happening: &Happening| EventPoint {
+            event: happening.event,
+            before: self.point_of(&happening.before),
+            after: self.point_of(&happening.after),
+        };
+        self.flown.happenings.iter().map(point)
+    }
+
+    /// The state at a time, s; before the start it is the initial one, after the end the final one; at an event that after its effect.
     pub fn at(&self, time: f64) -> FlightPoint {
-        let following = self.legs.partition_point(|leg| leg.step.end_time <= time);
-        match self.legs.get(following) {
+        let following = self.flown.legs.partition_point(|leg| leg.end_time() <= time);
+        match self.flown.legs.get(following) {
             _ if time <= 0.0 => self.initial(),
             Some(leg) => {
-                let motion = self.motion(leg.regime);
-                let state = motion.planet_fixed(&motion.interpolant(&leg.step).state_at(time));
-                self.point(motion.forces(), time, &state)
+                let motion = self.motion(leg);
+                let (state, heat_load) = motion.interpolant(&leg.step).at(&motion, time);
+                self.point(motion.forces(), leg.phase, time, &state, heat_load)
             }
             None => self.last(),
         }
     }
 
-    /// D/m, m/s², at a point of a flight of constant coefficients.
+    /// D/m, m/s², at a point of a flight of constant coefficients, of one phase.
     pub fn drag_deceleration(&self, point: &FlightPoint) -> f64 {
-        self.forces(self.regime).drag_under(point.loads.dynamic_pressure)
-    }
-
-    /// The instants of a sampling, strictly increasing, s.
-    ///
-    /// # Errors
-    /// When there are more than `limit`.
-    pub fn instants(&self, sampling: &Sampling, limit: usize) -> Result<Vec<f64>, TooManyInstants> {
-        let end = self.end_time();
-        let wanted = match sampling {
-            Sampling::PerStep(samples) => samples.saturating_mul(self.legs.len()),
-            Sampling::Count(count) => *count,
-            Sampling::Interval(_) | Sampling::Times(_) => 0,
-        };
-        if wanted > limit {
-            return Err(TooManyInstants { limit });
-        }
-        let mut instants = Instants { times: vec![0.0], end, limit };
-        match sampling {
-            Sampling::PerStep(samples) => {
-                for leg in &self.legs {
-                    for sample in 1..=*samples {
-                        instants.push(leg.step.time(ratio(sample, *samples)))?;
-                    }
-                }
-            }
-            Sampling::Interval(interval) => {
-                let mut sample = 1;
-                while instants.push(ratio(sample, 1) * interval)? {
-                    sample += 1;
-                }
-            }
-            Sampling::Count(count) => {
-                for sample in 1..count - 1 {
-                    instants.push(end * ratio(sample, count - 1))?;
-                }
-            }
-            Sampling::Times(times) => {
-                for time in times {
-                    instants.push(*time)?;
-                }
-            }
-        }
-        instants.finish()
+        self.forces(0, self.flown.start.regime).drag_under(point.loads.dynamic_pressure)
     }
 
     /// The states at ascending times, s.
     ///
     /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
+        let legs = &self.flown.legs;
         let mut following = 0;
-        let mut motion = self.motion(self.regime);
-        let mut inside: Option<(usize, Interpolant<6>)> = None;
+        let mut known: Option<(usize, Motion, LegInterpolant)> = None;
         let mut point = |time: f64| {
-            while self.legs.get(following).is_some_and(|leg| leg.step.end_time <= time) {
+            while legs.get(following).is_some_and(|leg| leg.end_time() <= time) {
                 following += 1;
             }
-            match self.legs.get(following) {
+            match legs.get(following) {
                 _ if time <= 0.0 => self.initial(),
                 Some(leg) => {
-                    motion.forces_mut().enter(leg.regime);
-                    let known = inside.take().filter(|(index, _)| *index == following);
-                    let (_, interpolant) =
-                        inside.insert(known.unwrap_or_else(|| (following, motion.interpolant(&leg.step))));
-                    self.point(motion.forces(), time, &motion.planet_fixed(&interpolant.state_at(time)))
+                    let (_, motion, interpolant) = match known.take() {
+                        Some(of_leg) if of_leg.0 == following => known.insert(of_leg),
+                        last => {
+                            let motion = last.map_or_else(
+                                || self.motion(leg),
+                                |(index, motion, _)| self.going_on(motion, &legs[index], leg),
+                            );
+                            let interpolant = motion.interpolant(&leg.step);
+                            known.insert((following, motion, interpolant))
+                        }
+                    };
+                    let (state, heat_load) = interpolant.at(motion, time);
+                    self.point(motion.forces(), leg.phase, time, &state, heat_load)
                 }
                 None => self.last(),
             }
@@ -315,22 +400,43 @@ impl Trajectory {
         times.iter().map(|time| point(*time)).collect()
     }
 
-    /// The equations that were integrated, in a regime.
-    pub(crate) fn motion(&self, regime: Regime) -> Motion {
-        let forces = self.forces(regime);
+    /// The equations that were integrated in a leg.
+    pub(crate) fn motion(&self, leg: &Leg) -> Motion {
+        let forces = self.forces(leg.phase, leg.regime);
         match self.case.solver.equations {
             Equations::Cartesian => Motion::Cartesian(Cartesian(forces)),
             Equations::Spherical => Motion::Spherical(Spherical(forces)),
         }
     }
 
-    fn forces(&self, regime: Regime) -> Forces {
-        let mut forces = Forces::new(self.case.models(), self.case.parameters());
+    /// The equations of a leg that follows another, of which there are the equations.
+    pub(crate) fn going_on(&self, mut motion: Motion, from: &Leg, to: &Leg) -> Motion {
+        if from.phase != to.phase {
+            return self.motion(to);
+        }
+        motion.forces_mut().enter(to.regime);
+        motion
+    }
+
+    fn forces(&self, phase: usize, regime: Regime) -> Forces {
+        let mut forces = self.flown.phases[phase].forces(&self.case);
         forces.enter(regime);
         forces
     }
 
-    fn point(&self, forces: &Forces, time: f64, state: &PlanetFixed<f64>) -> FlightPoint {
+    fn point_of(&self, instant: &Instant) -> FlightPoint {
+        let Instant { time, state, heat_load, phase, regime } = instant;
+        self.point(&self.forces(*phase, *regime), *phase, *time, state, *heat_load)
+    }
+
+    fn point(
+        &self,
+        forces: &Forces,
+        phase: usize,
+        time: f64,
+        state: &PlanetFixed<f64>,
+        heat_load: Option<f64>,
+    ) -> FlightPoint {
         let planet = &self.case.planet;
         let flight_path = FlightPath::from_planet_fixed(state).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &planet.shape);
@@ -341,12 +447,14 @@ impl Trajectory {
         let across = inertial.position.cross(&inertial.velocity).norm();
         let range = self.great_circle.map(|circle| circle.along_and_across(&state.position));
         let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * planet.equatorial_radius()));
+        let loads = forces.loads(time, state);
+        let wall = forces.heating().zip(loads.heat_flux);
         FlightPoint {
             time,
             flight_path,
             geodetic_latitude,
             geodetic_altitude,
-            loads: forces.loads(time, state),
+            loads,
             temperature,
             pressure,
             speed_of_sound,
@@ -357,78 +465,9 @@ impl Trajectory {
             specific_energy: 0.5 * inertial.velocity.norm_squared() + planet.potential(&state.position),
             downrange,
             crossrange,
+            mass: self.flown.phases[phase].mass(time),
+            heat_load,
+            wall_temperature: wall.map(|(nose, flux)| nose.wall_temperature(flux.total())),
         }
     }
-}
-
-/// The equations of either formulation.
-pub(crate) enum Motion {
-    Cartesian(Cartesian),
-    Spherical(Spherical),
-}
-
-impl Motion {
-    pub(crate) fn forces(&self) -> &Forces {
-        match self {
-            Self::Cartesian(motion) => motion.forces(),
-            Self::Spherical(motion) => motion.forces(),
-        }
-    }
-
-    pub(crate) fn forces_mut(&mut self) -> &mut Forces {
-        match self {
-            Self::Cartesian(motion) => motion.forces_mut(),
-            Self::Spherical(motion) => motion.forces_mut(),
-        }
-    }
-
-    pub(crate) fn interpolant(&self, step: &Step<6>) -> Interpolant<6> {
-        match self {
-            Self::Cartesian(motion) => step.interpolant(motion),
-            Self::Spherical(motion) => step.interpolant(motion),
-        }
-    }
-
-    /// The state of six numbers of the formulation.
-    pub(crate) fn planet_fixed(&self, coordinates: &[f64; 6]) -> PlanetFixed<f64> {
-        match self {
-            Self::Cartesian(_) => Cartesian::planet_fixed(coordinates),
-            Self::Spherical(_) => Spherical::planet_fixed(coordinates),
-        }
-    }
-}
-
-/// Instants between the start and the end, as they are gathered.
-struct Instants {
-    times: Vec<f64>,
-    end: f64,
-    limit: usize,
-}
-
-impl Instants {
-    /// Adds an instant that follows the last and comes before the end; false once the end is reached.
-    fn push(&mut self, time: f64) -> Result<bool, TooManyInstants> {
-        let inside = time < self.end;
-        let last = self.times.last().copied().unwrap_or(0.0);
-        if inside && time > last {
-            // The final instant still has to find a place.
-            if self.times.len() + 1 >= self.limit {
-                return Err(TooManyInstants { limit: self.limit });
-            }
-            self.times.push(time);
-        }
-        Ok(inside)
-    }
-
-    fn finish(mut self) -> Result<Vec<f64>, TooManyInstants> {
-        if self.end > 0.0 {
-            self.times.push(self.end);
-        }
-        if self.times.len() > self.limit { Err(TooManyInstants { limit: self.limit }) } else { Ok(self.times) }
-    }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "rows are counted far below 2^52")]
-fn ratio(part: usize, whole: usize) -> f64 {
-    part as f64 / whole as f64
 }

@@ -40,6 +40,8 @@ pub struct Vehicle {
     pub reference_area: f64,
     /// The coefficients.
     pub aerodynamics: Aerodynamics,
+    /// Of the nose at its stagnation point, m; needed for heating alone.
+    pub nose_radius: Option<f64>,
 }
 
 /// The coefficients of an instant.
@@ -72,9 +74,27 @@ impl Aerodynamics {
 }
 
 impl Vehicle {
+    /// The same vehicle with another mass, kg; its coefficients and area stay, and with them `C_D S` where that is told by a ratio to
+    /// the mass.
+    #[must_use]
+    pub fn with_mass(&self, mass: f64) -> Self {
+        let aerodynamics = match self.aerodynamics {
+            Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => {
+                let ballistic_coefficient = ballistic_coefficient * (mass / self.mass);
+                Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag }
+            }
+            ref other => other.clone(),
+        };
+        Self { mass, aerodynamics, ..*self }
+    }
+
+    /// Whether its coefficients are told by ratios.
+    pub(crate) fn is_ballistic(&self) -> bool {
+        matches!(self.aerodynamics, Aerodynamics::Ballistic { .. })
+    }
+
     /// Whether the vehicle has any lift.
     pub fn has_lift(&self) -> bool {
-        let without_area = matches!(self.aerodynamics, Aerodynamics::Ballistic { .. });
-        self.aerodynamics.has_lift() && (without_area || self.reference_area > 0.0)
+        self.aerodynamics.has_lift() && (self.is_ballistic() || self.reference_area > 0.0)
     }
 }

@@ -3,9 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::coordinates::PlanetFixed;
+use crate::motion::Power;
 use crate::scenario::{Bound, Case, Scenario};
 use crate::simulate::{SimulationError, arrival};
-use crate::trajectory::{Leg, Trajectory};
+use crate::trajectory::Trajectory;
 
 /// By how much a flight is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Verification {
     pub energy_drift: f64,
     /// The energy that drag, and in wind lift, has taken, J/kg.
     pub drag_work: f64,
+    /// The energy that thrust has given, J/kg; impulses not included.
+    pub thrust_work: f64,
 }
 
 /// Flies the scenario once more at a hundredth of its tolerance, and adds up the energy along the flight.
@@ -34,42 +37,49 @@ pub fn verify(
 ) -> Result<Verification, SimulationError> {
     let relative_tolerance = (scenario.case().solver.relative_tolerance / 100.0).max(Bound::RELATIVE_TOLERANCE.minimum);
     let finer = arrival(&scenario.finer(relative_tolerance), interrupt)?;
-    let (energy_drift, drag_work) = energy_balance(flight, interrupt)?;
+    let (energy_drift, Power { drag: drag_work, thrust: thrust_work }) = energy_balance(flight, interrupt)?;
     Ok(Verification {
         relative_tolerance,
         time_difference: flight.end_time() - finer.time,
         distance: (flight.arrival().state.position - finer.state.position).norm(),
         energy_drift,
         drag_work,
+        thrust_work,
     })
 }
 
-/// The greatest error of the balance, and the work of the drag, J/kg.
+/// The greatest error of the balance, and the work of drag and thrust, J/kg.
 ///
 /// ```text
-/// E = V²/2 - ω² (x² + y²)/2 + U,   dE/dt = (D + L)·V/m
+/// E = V²/2 - ω² (x² + y²)/2 + U,   dE/dt = (D + L + T)·V/m
 /// ```
 ///
-/// with the potential U of gravity. Without wind, lift and the Coriolis force are across the velocity; the energy is Jameson 2006,
-/// equation 29, integrated once.
-fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, f64), SimulationError> {
-    let mut motion = flight.motion(flight.regime);
-    let start = energy(&flight.case, &flight.case.initial_state);
-    let (mut drift, mut work): (f64, f64) = (0.0, 0.0);
-    for Leg { step, regime } in &flight.legs {
+/// with the potential U of gravity; an impulse adds what it adds to V²/2. Without wind, lift and the Coriolis force are across the
+/// velocity; the energy is Jameson 2006, equation 29, integrated once.
+fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, Power), SimulationError> {
+    let energy = |state: &PlanetFixed<f64>| energy(&flight.case, state);
+    let mut given = energy(&flight.case.initial_state);
+    let (mut drift, mut work) = (0.0_f64, Power { drag: 0.0, thrust: 0.0 });
+    let mut happenings = flight.flown.happenings.iter().peekable();
+    for leg in &flight.flown.legs {
+        let (start, end) = (leg.start_time(), leg.end_time());
         if interrupt.load(Ordering::Relaxed) {
-            return Err(SimulationError::Interrupted { time: step.start_time });
+            return Err(SimulationError::Interrupted { time: start });
         }
-        motion.forces_mut().enter(*regime);
-        let interpolant = motion.interpolant(step);
-        let power =
-            |part: f64| motion.forces().power_lost(step.time(part), &motion.planet_fixed(&interpolant.state(part)));
-        let half = step.length() / 2.0;
+        while let Some(happening) = happenings.next_if(|happening| happening.before.time <= start) {
+            given += energy(&happening.after.state) - energy(&happening.before.state);
+        }
+        let motion = flight.motion(leg);
+        let interpolant = motion.interpolant(&leg.step);
+        let half = (end - start) / 2.0;
         for (abscissa, weight) in GAUSS {
-            work += half * weight * (power(0.5 - abscissa / 2.0) + power(0.5 + abscissa / 2.0));
+            for time in [start + half * (1.0 - abscissa), start + half * (1.0 + abscissa)] {
+                let Power { drag, thrust } = motion.forces().power(time, &interpolant.at(&motion, time).0);
+                work.drag += half * weight * drag;
+                work.thrust += half * weight * thrust;
+            }
         }
-        let off = energy(&flight.case, &motion.planet_fixed(&step.end)) + work - start;
-        drift = drift.max(off.abs());
+        drift = drift.max((energy(&motion.end(&leg.step)) + work.drag - work.thrust - given).abs());
     }
     Ok((drift, work))
 }

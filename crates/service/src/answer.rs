@@ -17,6 +17,7 @@ use crate::wire::scenario::{Job, Wanted};
 use crate::wire::sensitivities::Sensitivities;
 use crate::wire::track::Track;
 use crate::wire::trajectory::{Extras, SimulateResponse};
+use crate::wire::verification::Verification;
 
 /// Flies a case; `interrupt` ends the flight early.
 ///
@@ -58,7 +59,10 @@ fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extr
     }
     if request.verify {
         match verify(&job.scenario, flight, interrupt) {
-            Ok(core) => extras.verification = Some(core.into()),
+            Ok(core) => {
+                let has_thrust = request.events.iter().any(|event| event.then.thrust.is_some());
+                extras.verification = Some(Verification::from_core(core, has_thrust));
+            }
             Err(error @ SimulationError::Interrupted { .. }) => return Err(error),
             Err(error) => extras.unverified = Some(error),
         }

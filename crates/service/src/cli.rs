@@ -2,6 +2,7 @@
 
 pub mod cases;
 pub mod healthcheck;
+pub mod validate;
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Write};
@@ -14,6 +15,7 @@ use clap_complete::Shell;
 use crate::answer;
 use crate::cli::cases::{Cases, States};
 use crate::cli::healthcheck::Healthcheck;
+use crate::cli::validate::Validate;
 use crate::config::Config;
 use crate::format::Format;
 use crate::router::document;
@@ -65,6 +67,9 @@ pub enum Command {
         #[arg(long, short, value_parser = ["json"], default_value = "json")]
         format: String,
     },
+    /// Fly every reference case that is built in, and print what is expected and what comes out: the JSON of GET /validation
+    #[command(after_help = [VALIDATE_EXAMPLES, EXIT_CODES].concat())]
+    Validate(Validate),
     /// Ask the service of this machine whether it runs, for containers that have no other program to ask with
     Healthcheck(Healthcheck),
     /// Print the OpenAPI document
@@ -80,7 +85,8 @@ pub enum Command {
 const EXIT_CODES: &str = "\
 Exit codes:
   0  all went well
-  1  a case failed: it is not valid, or cannot be flown to its end; or the service cannot listen or does not answer
+  1  a case failed: it is not valid, cannot be flown to its end, or, a reference case, came out otherwise than expected; or the
+     service cannot listen or does not answer
   2  the command line is wrong
   3  a file cannot be read or written
 ";
@@ -116,6 +122,16 @@ const CONVERT_EXAMPLES: &str = r#"Examples:
   echo '{"state": {"type": "ecef", "position": [7e6, 0, 0], "velocity": [0, 7e3, 0]}}' | reentry convert - | jq .geodetic
 
 "#;
+
+const VALIDATE_EXAMPLES: &str = "\
+Examples:
+  reentry validate
+  reentry validate --format json | jq .passed
+  reentry validate --format markdown > validation.md
+
+Flights that were flown depend on more than was published of them: their differences are told and are no failure.
+
+";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -170,6 +186,7 @@ impl Command {
             Self::Simulate { cases, format } => cases.run(format, answer::simulate),
             Self::Analytic { cases, format } => cases.run(format, answer::analytic),
             Self::Convert { states, .. } => states.run(|tree, _, _, _| answer::convert(tree)),
+            Self::Validate(validate) => validate.run(),
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;
                 Output::Standard.write(b"ok\n").map(drop)

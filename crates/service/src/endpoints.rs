@@ -12,3 +12,4 @@ pub mod docs;
 pub mod health;
 pub mod home;
 pub mod simulate;
+pub mod validation;

@@ -126,7 +126,7 @@ impl ApiError {
 
     /// The one table: status, type and title.
     fn class(&self) -> (StatusCode, &'static str, &'static str) {
-        use SimulationError::{Chatter, Interrupted, Overflow, Singularity, StepLimit, TooStiff};
+        use SimulationError::{Chatter, Interrupted, NothingLeft, Overflow, Singularity, StepLimit, TooStiff};
         use StatusCode as Status;
         match self {
             Self::NotJson(_) | Self::CaseNotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
@@ -153,6 +153,7 @@ impl ApiError {
                 Chatter { .. } => {
                     (Status::UNPROCESSABLE_ENTITY, "/problems/chattering-schedule", "Schedule undoes itself")
                 }
+                NothingLeft { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/no-mass-left", "No mass left"),
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
                 Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
             },
@@ -176,6 +177,9 @@ impl ApiError {
             ),
             Self::Flight(SimulationError::Singularity { .. }) => {
                 one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
+            }
+            Self::Flight(SimulationError::NothingLeft { .. }) => {
+                one("/events", "switch the thrust off by an event, or say how much propellant there is".to_owned())
             }
             Self::Flight(SimulationError::Chatter { switch, .. }) => {
                 let advice =

@@ -16,6 +16,7 @@ pub mod router;
 pub mod serve;
 pub mod state;
 pub mod telemetry;
+pub mod validation;
 pub mod wire;
 
 pub use router::{app, document};

@@ -7,10 +7,10 @@ use utoipa::OpenApi;
 
 use crate::error::Problem;
 use crate::wire::batch::MOST_CASES;
+use crate::wire::columns::COLUMNS;
 use crate::wire::epoch::RFC3339_PATTERN;
 use crate::wire::reader::MOST_COLUMNS;
 use crate::wire::scenario::Output;
-use crate::wire::trajectory::COLUMNS;
 
 /// The frame of the document; the router adds the paths.
 #[derive(OpenApi)]
@@ -29,12 +29,13 @@ use crate::wire::trajectory::COLUMNS;
 pub struct Document;
 
 /// Fields of which exactly one is given, by the name of their object.
-const ALTERNATIVES: [(&str, &[&str]); 5] = [
+const ALTERNATIVES: [(&str, &[&str]); 6] = [
     ("PlanetRelative", &["radius", "altitude"]),
     ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),
     ("InertialFlightPath", &["radius", "altitude"]),
     ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
     ("LayeredAtmosphere", &["layers", "preset"]),
+    ("Condition", &["falls_through", "rises_through"]),
 ];
 
 /// Every failure that every endpoint may answer with.
@@ -65,14 +66,15 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         }
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
-        for (path, formats) in [
-            ("/simulate", json!(["json", "csv", "geojson", "kml", "czml"])),
-            ("/analytic", json!(["json", "csv"])),
-            ("/simulate/batch", json!(["ndjson"])),
-            ("/convert", json!(["json"])),
+        for (path, method, formats) in [
+            ("/simulate", "post", json!(["json", "csv", "geojson", "kml", "czml"])),
+            ("/analytic", "post", json!(["json", "csv"])),
+            ("/simulate/batch", "post", json!(["ndjson"])),
+            ("/convert", "post", json!(["json"])),
+            ("/validation", "get", json!(["json"])),
         ] {
-            if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut("post")) {
-                add_failures(operation);
+            if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut(method)) {
+                add_failures(operation, method);
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
             }
         }
@@ -183,6 +185,36 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             ("then", json!({"properties": {"reference_area": false}})),
             ("else", json!({"required": ["reference_area"]})),
         ],
+        "SimulateRequest" => {
+            vec![("dependentSchemas", json!({"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}))]
+        }
+        // The theories know neither, but an empty list is no event.
+        "AnalyticRequest" => {
+            vec![("allOf", json!([{"properties": {"heating": false, "events": {"maxItems": 0}}}]))]
+        }
+        "Effect" => vec![(
+            "dependentSchemas",
+            json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
+        )],
+        "Condition" => {
+            let of = |quantity: &str, bounds: Value| {
+                let both = json!({"properties": {"falls_through": bounds, "rises_through": bounds}});
+                json!({"if": is("quantity", quantity), "then": both})
+            };
+            let not_negative = json!({"minimum": 0});
+            let time = json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}});
+            let quantities = [
+                of("time", json!({"minimum": 0, "maximum": 1e9})),
+                time,
+                of("altitude", json!({"minimum": -1e12, "maximum": 1e12})),
+                of("speed", json!({"minimum": 0, "maximum": 1e6})),
+                of("mach", not_negative.clone()),
+                of("dynamic_pressure", not_negative.clone()),
+                of("load_factor", not_negative),
+                of("flight_path_angle", json!({"minimum": -90, "maximum": 90})),
+            ];
+            vec![("allOf", json!(quantities))]
+        }
         "Schedule" => {
             let at = |bound: Value| json!({"properties": {"at": {"items": bound}}});
             vec![
@@ -224,7 +256,7 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("times/items", not_negative),
             ("trajectory", json!({"enum": [false]})),
             ("columns", json!({"minItems": 1, "maxItems": COLUMNS.len(), "uniqueItems": true})),
-            ("columns/items", json!({"enum": COLUMNS.each_ref().map(|column| column.name)})),
+            ("columns/items", json!({"enum": COLUMNS.iter().map(|column| column.name).collect::<Vec<_>>()})),
         ],
         "TableAtmosphere" => vec![
             ("altitude/items", distance),
@@ -254,8 +286,12 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
     }
 }
 
-fn add_failures(operation: &mut Value) {
+fn add_failures(operation: &mut Value, method: &str) {
     for (status, description) in FAILURES {
+        // A request without a body has no fault of one.
+        if method == "get" && ["408", "413", "415", "422"].contains(&status) {
+            continue;
+        }
         operation["responses"][status] = json!({
             "description": description,
             "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
@@ -272,6 +308,8 @@ fn add_examples(paths: &mut Map<String, Value>) {
             "value": example(include_str!("../../../openapi/examples/target_2.json"))},
         "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
             "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
+        "deorbit": {"summary": "A capsule comes down from orbit: a burn, the heat of entry, parachutes",
+            "value": example(include_str!("../../../openapi/examples/deorbit.json"))},
         "impulse": {"summary": "IMPULSE: a missile's vehicle after burnout, from inertial vectors",
             "value": example(include_str!("../../../openapi/examples/impulse.json"))},
     });

@@ -13,7 +13,7 @@ use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use crate::endpoints::{analytic, batch, convert, docs, health, home, simulate};
+use crate::endpoints::{analytic, batch, convert, docs, health, home, simulate, validation};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, observe};
 use crate::openapi::{self, Document};
@@ -26,6 +26,7 @@ fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(batch::simulate_batch))
         .routes(routes!(convert::convert))
         .routes(routes!(analytic::analytic))
+        .routes(routes!(validation::validation))
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
 }

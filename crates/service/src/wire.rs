@@ -9,6 +9,8 @@ pub mod reader;
 pub mod atmosphere;
 pub mod control;
 pub mod epoch;
+pub mod events;
+pub mod heating;
 pub mod planet;
 pub mod state;
 pub mod vehicle;
@@ -16,12 +18,14 @@ pub mod wind;
 
 pub mod analytic;
 pub mod batch;
+pub mod columns;
 pub mod convert;
 pub mod scenario;
 pub mod sensitivities;
 pub mod track;
 pub mod trajectory;
 pub mod verification;
+pub mod warning;
 
 use serde::Serialize;
 use utoipa::ToSchema;

@@ -36,6 +36,30 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
     end.re <= 0.0 || dips()
 }
 
+/// The part of the step at which the quantity first comes from above zero to zero, as far as the ends of the step tell of it: it is
+/// above at the start and not at the end, or falls and rises again, or rises and falls again, with tangents that meet beyond zero.
+pub fn first_crossing(start: Dual64, end: Dual64, length: f64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
+    let beyond = || tangents_meet((0.0, start), (1.0, end), length);
+    let crosses = if start.re > 0.0 {
+        seems_to_fall(start, end, length)
+    } else {
+        start.eps > 0.0 && end.eps < 0.0 && end.re <= 0.0 && beyond() > 0.0
+    };
+    if !crosses {
+        return None;
+    }
+    let mut from = (0.0, start);
+    for part in [0.25, 0.5, 0.75, 1.0] {
+        let to = (part, if part < 1.0 { inside(part) } else { end });
+        let crossing = crossing_between(from, to, length, &inside);
+        if crossing.is_some() {
+            return crossing;
+        }
+        from = to;
+    }
+    None
+}
+
 /// The part of the step at which the quantity is greatest, if it rises at the start and falls at the end.
 pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
     (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), &inside))
@@ -44,28 +68,41 @@ pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Op
 /// A part of the step, and the quantity there.
 type Sample = (f64, Dual64);
 
+/// A fall; of a quantity that never is above zero, where it turns down.
 fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
-    let crossing = |a: Sample, b: Sample| root::bracketed(|part| inside(part).re, (a.0, a.1.re), (b.0, b.1.re), 0.0);
     if a.1.eps > 0.0 && b.1.eps < 0.0 {
         let part = turning_point(a, b, inside);
         let top = (part, inside(part));
-        if top.1.re <= 0.0 {
-            return Some(part);
-        }
-        return (b.1.re <= 0.0).then(|| crossing(top, b));
+        return if top.1.re <= 0.0 { Some(part) } else { crossing_after(top, b, inside) };
     }
     if a.1.re <= 0.0 {
         return (a.1.eps < 0.0).then_some(a.0);
     }
-    if b.1.re <= 0.0 {
-        return Some(crossing(a, b));
-    }
-    if a.1.eps < 0.0 && b.1.eps > 0.0 && tangents_meet(a, b, length) < 0.0 {
+    crossing_between(a, b, length, inside)
+}
+
+/// A fall from above zero.
+fn crossing_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
+    let turning = || {
         let part = turning_point(a, b, inside);
-        let bottom = (part, inside(part));
-        return (bottom.1.re <= 0.0).then(|| crossing(a, bottom));
+        (part, inside(part))
+    };
+    if a.1.eps > 0.0 && b.1.eps < 0.0 {
+        return if b.1.re <= 0.0 { crossing_after(turning(), b, inside) } else { None };
     }
-    None
+    if a.1.re <= 0.0 {
+        return None;
+    }
+    if a.1.eps < 0.0 && b.1.eps > 0.0 && b.1.re > 0.0 {
+        return if tangents_meet(a, b, length) < 0.0 { crossing_after(a, turning(), inside) } else { None };
+    }
+    crossing_after(a, b, inside)
+}
+
+/// The zero between a place above it and one that is not.
+fn crossing_after(above: Sample, end: Sample, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
+    let bracketed = || root::bracketed(|part| inside(part).re, (above.0, above.1.re), (end.0, end.1.re), 0.0);
+    (above.1.re > 0.0 && end.1.re <= 0.0).then(bracketed)
 }
 
 /// Where the rate changes sign.

@@ -175,16 +175,18 @@ impl<const N: usize> Interpolant<N> {
     }
 }
 
-/// The state at the end of a step that was taken before, from another start: the numbers may carry derivatives, which then are those
-/// of the end by what varies at the start and in the system. The step is not chosen anew, so that its choice adds nothing.
+/// The state at the end of a step that was taken before, from a time over a length, s, from another start: the numbers may carry
+/// derivatives, which then are those of the end by what varies at the start and in the system. The step is not chosen anew, so that
+/// its choice adds nothing.
 pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
     start: &[S; N],
-    step: &Step<N>,
+    time: f64,
+    length: f64,
 ) -> [S; N] {
-    let time = S::from(step.start_time);
+    let time = S::from(time);
     let system = &Once(system);
-    attempt(system, time, start, &system.derivative(time, start), step.length()).end
+    attempt(system, time, start, &system.derivative(time, start), length).end
 }
 
 /// A system whose derivative stands in the program once, not in every stage: in wide numbers it is long.

@@ -1,6 +1,6 @@
 //! The Cartesian formulation: planet-fixed position and velocity. It has no singularity but the planet's centre.
 
-use super::{Forces, Formulation, Singularity};
+use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without_heat_load};
 use crate::coordinates::PlanetFixed;
 use crate::integrate::{Pace, System};
 use crate::scalar::{Over, Scalar};
@@ -18,27 +18,43 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Cartesian<P> {
     }
 }
 
-impl Pace<6> for Cartesian {
-    fn magnitudes(&self) -> [f64; 6] {
-        let [length, speed] = self.0.units();
-        [length, length, length, speed, speed, speed]
-    }
-
-    fn longest_step(&self, time: f64, coordinates: &[f64; 6]) -> f64 {
-        self.0.longest_step(time, &PlanetFixed::from(*coordinates))
+/// With the heat load, J/m², as the seventh number.
+impl<P: Scalar, S: Over<P>> System<S, 7> for Cartesian<P> {
+    #[inline(always)]
+    fn derivative(&self, time: S, [x, y, z, vx, vy, vz, _]: &[S; 7]) -> [S; 7] {
+        let state = PlanetFixed::from([*x, *y, *z, *vx, *vy, *vz]);
+        let (acceleration, heat_flux) = self.0.acceleration_and_heat_flux(time, &state);
+        [*vx, *vy, *vz, acceleration.x, acceleration.y, acceleration.z, heat_flux]
     }
 }
 
-impl Formulation for Cartesian {
-    fn coordinates<S: Scalar>(state: &PlanetFixed<S>) -> [S; 6] {
-        (*state).into()
+impl<const N: usize> Pace<N> for Cartesian
+where
+    Self: System<f64, N>,
+{
+    fn magnitudes(&self) -> [f64; N] {
+        let [length, speed] = self.0.units();
+        with_heat_load([length, length, length, speed, speed, speed], HEAT_LOAD)
     }
 
-    fn planet_fixed<S: Scalar>(coordinates: &[S; 6]) -> PlanetFixed<S> {
-        (*coordinates).into()
+    fn longest_step(&self, time: f64, coordinates: &[f64; N]) -> f64 {
+        self.0.longest_step(time, &without_heat_load(coordinates).into())
+    }
+}
+
+impl<const N: usize> Formulation<N> for Cartesian
+where
+    Self: System<f64, N>,
+{
+    fn coordinates<S: Scalar>(state: &PlanetFixed<S>, heat_load: S) -> [S; N] {
+        with_heat_load((*state).into(), heat_load)
     }
 
-    fn singularity(&self, _: &[f64; 6], _: f64) -> Option<Singularity> {
+    fn planet_fixed<S: Scalar>(coordinates: &[S; N]) -> PlanetFixed<S> {
+        without_heat_load(coordinates).into()
+    }
+
+    fn singularity(&self, _: &[f64; N], _: f64) -> Option<Singularity> {
         None
     }
 

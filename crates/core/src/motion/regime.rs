@@ -29,6 +29,8 @@ pub enum Switch {
     BankAngle,
     /// The angle of attack, at the corners of its schedule.
     AngleOfAttack,
+    /// The radiation of the air, at the entries of its table.
+    Radiation,
 }
 
 /// A table, and the quantity by which something is looked up in it.
@@ -42,6 +44,8 @@ pub enum Lookup {
     Mach,
     /// The aerodynamics by angle of attack.
     AngleOfAttack,
+    /// The radiation of the air by speed; below its table there is none.
+    Radiation,
 }
 
 /// By what a formula changes.
@@ -51,6 +55,8 @@ pub(crate) enum Quantity {
     Along(Against),
     /// α, rad.
     AngleOfAttack,
+    /// Relative to the air, m/s.
+    AirSpeed,
 }
 
 /// Of every switch the stretch of its formula that holds: 0 before the first boundary, 1 after it, and so on.
@@ -63,8 +69,15 @@ pub(crate) struct Chatter(pub(crate) Switch);
 
 impl Switch {
     /// All of them.
-    pub(crate) const ALL: [Self; 6] =
-        [Self::Atmosphere, Self::Wind, Self::Mach, Self::TableAngleOfAttack, Self::BankAngle, Self::AngleOfAttack];
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Atmosphere,
+        Self::Wind,
+        Self::Mach,
+        Self::TableAngleOfAttack,
+        Self::BankAngle,
+        Self::AngleOfAttack,
+        Self::Radiation,
+    ];
 
     /// Whether it is the first and the last entry of a table.
     fn is_of_table(self) -> bool {
@@ -86,7 +99,7 @@ impl Quantity {
     pub(crate) fn resolution(self) -> f64 {
         match self {
             Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack => 1e-9,
-            Self::Along(Against::Altitude | Against::Speed) => 1e-6,
+            Self::Along(Against::Altitude | Against::Speed) | Self::AirSpeed => 1e-6,
         }
     }
 }
@@ -133,6 +146,7 @@ impl<P: Scalar> Forces<P> {
             },
             Switch::BankAngle => self.models.control.bank_angle.corners().map(along),
             Switch::AngleOfAttack => self.models.control.angle_of_attack.corners().map(along),
+            Switch::Radiation => self.models.heating.as_ref().map(|heating| (Quantity::AirSpeed, heating.boundaries())),
         };
         boundaries.filter(|(_, boundaries)| !boundaries.is_empty())
     }
@@ -153,6 +167,7 @@ impl<P: Scalar> Forces<P> {
         match quantity {
             Quantity::Along(against) => flow.quantity(against, time),
             Quantity::AngleOfAttack => self.angle_of_attack(time, flow),
+            Quantity::AirSpeed => flow.directions.speed,
         }
     }
 }
@@ -172,6 +187,7 @@ impl Forces {
             (Switch::Wind, Lookup::Wind, true),
             (Switch::Mach, Lookup::Mach, true),
             (Switch::TableAngleOfAttack, Lookup::AngleOfAttack, true),
+            (Switch::Radiation, Lookup::Radiation, true),
         ];
         tables.into_iter().filter(|(.., is_table)| *is_table).filter_map(|(switch, table, _)| {
             let (_, range) = self.boundaries(switch)?;
@@ -180,7 +196,7 @@ impl Forces {
             match stretch {
                 // One entry holds everywhere.
                 _ if first >= last => None,
-                0 => Some((table, first, false)),
+                0 => (switch != Switch::Radiation).then_some((table, first, false)),
                 _ if stretch == range.len() => Some((table, last, true)),
                 _ => None,
             }

@@ -2,10 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::{Directions, Forces, Formulation, Singularity, lift_fade_over_cosine};
+use super::directions::{Directions, lift_fade_over_cosine};
+use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without_heat_load};
 use crate::coordinates::{FlightPath, PlanetFixed};
 use crate::integrate::{Pace, System};
 use crate::planet::Pull;
+use crate::propulsion::Axis;
 use crate::scalar::{Over, Scalar};
 
 /// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
@@ -16,6 +18,16 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     #[inline(always)]
     fn derivative(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
         if self.0.of_thesis { self.rates::<true, S>(time, coordinates) } else { self.rates_by_any(time, coordinates) }
+    }
+}
+
+/// With the heat load, J/m², as the seventh number.
+impl<P: Scalar, S: Over<P>> System<S, 7> for Spherical<P> {
+    #[inline(always)]
+    fn derivative(&self, time: S, coordinates: &[S; 7]) -> [S; 7] {
+        let coordinates = without_heat_load(coordinates);
+        let (_, heat_flux) = self.0.acceleration_and_heat_flux(time, &FlightPath::from(coordinates).to_planet_fixed());
+        with_heat_load(self.rates_by_any(time, &coordinates), heat_flux)
     }
 }
 
@@ -40,6 +52,10 @@ impl<P: Scalar> Spherical<P> {
         let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
         let velocity = Velocity { speed: v, sin_gamma, cos_gamma, sin_psi, cos_psi };
         let [ahead, up, left_over_cos_gamma] = self.aerodynamic::<THESIS, _>(time, altitude, r, &velocity);
+        let [ahead, up, left_over_cos_gamma] = match if THESIS { None } else { self.thrust(time, &velocity) } {
+            Some(thrust) => [ahead + thrust[0], up + thrust[1], left_over_cos_gamma + thrust[2]],
+            None => [ahead, up, left_over_cos_gamma],
+        };
         let Pull { inward, axial } =
             if THESIS { Pull { inward: planet.point_gravity(r), axial: S::zero() } } else { planet.pull(r, sin_phi) };
         // Gravity towards the centre, and to the north.
@@ -122,28 +138,51 @@ impl<P: Scalar> Spherical<P> {
     }
 }
 
-impl Pace<6> for Spherical {
-    fn magnitudes(&self) -> [f64; 6] {
+impl<P: Scalar> Spherical<P> {
+    /// The thrust over the mass, m/s²: along the velocity, across it upward, and across it to the left over cos γ.
+    #[inline(always)]
+    fn thrust<S: Over<P>>(&self, time: S, velocity: &Velocity<S>) -> Option<[S; 3]> {
+        let burn = self.0.burn.as_ref()?;
+        let acceleration = burn.lightness(time) * burn.acceleration;
+        Some(match burn.along {
+            Axis::Velocity => [acceleration, S::zero(), S::zero()],
+            Axis::Radial => [acceleration * velocity.sin_gamma, acceleration * velocity.cos_gamma, S::zero()],
+            Axis::Normal => {
+                let length = (velocity.cos_gamma * velocity.cos_gamma).sqrt();
+                [S::zero(), S::zero(), acceleration * lift_fade_over_cosine(length)]
+            }
+        })
+    }
+}
+
+impl<const N: usize> Pace<N> for Spherical
+where
+    Self: System<f64, N>,
+{
+    fn magnitudes(&self) -> [f64; N] {
         let [length, speed] = self.0.units();
-        [length, 1.0, 1.0, speed, 1.0, 1.0]
+        with_heat_load([length, 1.0, 1.0, speed, 1.0, 1.0], HEAT_LOAD)
     }
 
-    fn longest_step(&self, time: f64, coordinates: &[f64; 6]) -> f64 {
+    fn longest_step(&self, time: f64, coordinates: &[f64; N]) -> f64 {
         self.0.longest_step(time, &Self::planet_fixed(coordinates))
     }
 }
 
-impl Formulation for Spherical {
-    fn coordinates<S: Scalar>(state: &PlanetFixed<S>) -> [S; 6] {
-        FlightPath::from_planet_fixed(state).into()
+impl<const N: usize> Formulation<N> for Spherical
+where
+    Self: System<f64, N>,
+{
+    fn coordinates<S: Scalar>(state: &PlanetFixed<S>, heat_load: S) -> [S; N] {
+        with_heat_load(FlightPath::from_planet_fixed(state).into(), heat_load)
     }
 
-    fn planet_fixed<S: Scalar>(coordinates: &[S; 6]) -> PlanetFixed<S> {
-        FlightPath::from(*coordinates).to_planet_fixed()
+    fn planet_fixed<S: Scalar>(coordinates: &[S; N]) -> PlanetFixed<S> {
+        FlightPath::from(without_heat_load(coordinates)).to_planet_fixed()
     }
 
-    fn singularity(&self, coordinates: &[f64; 6], within: f64) -> Option<Singularity> {
-        let state = FlightPath::from(*coordinates);
+    fn singularity(&self, coordinates: &[f64; N], within: f64) -> Option<Singularity> {
+        let state = FlightPath::from(without_heat_load(coordinates));
         let [_, circular_speed] = self.0.units();
         if state.speed <= within * circular_speed {
             Some(Singularity::Rest)

@@ -18,13 +18,16 @@ type End = Result<Arrival, SimulationError>;
 ///
 /// Every flight has steps of its own, and its lane takes the next one when it has ended. Neighbours share the lanes
 /// if their models and their formulations are the same. Where the formulas of models change on the way, a flight is flown alone,
-/// since every lane would need its own.
+/// since every lane would need its own; so are heated flights, and those on which something is watched.
 pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &AtomicBool) -> Vec<End> {
-    let shared = |scenario: &Scenario| (scenario.case().models(), scenario.case().solver.equations);
+    let shared = |scenario: &Scenario| {
+        let case = scenario.case();
+        (case.models(), case.solver.equations, case.is_watched())
+    };
     let mut ends = Vec::with_capacity(scenarios.len());
     for group in scenarios.chunk_by(|a, b| shared(a) == shared(b)) {
         let Some(case) = group.first().map(Scenario::case) else { continue };
-        if case.forces().has_switches() {
+        if case.forces().has_switches() || case.is_watched() || case.heating.is_some() {
             ends.extend(group.iter().map(|scenario| arrival(scenario, interrupt)));
             continue;
         }
@@ -39,11 +42,11 @@ pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &AtomicBool) 
 /// A flight, and its place among the scenarios.
 struct Lane<'a, F> {
     index: usize,
-    flight: Flight<'a, F>,
+    flight: Flight<'a, F, 6>,
 }
 
 /// Flies scenarios of the same models in a formulation, of which each has one `alone` and all lanes have one `abreast`.
-fn fly_abreast<'a, F: Formulation, M: System<Lanes<L>, 6>, const L: usize>(
+fn fly_abreast<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
     scenarios: &'a [Scenario],
     interrupt: &'a AtomicBool,
     alone: impl Fn(Forces) -> F,
@@ -53,12 +56,14 @@ fn fly_abreast<'a, F: Formulation, M: System<Lanes<L>, 6>, const L: usize>(
     let mut waiting = scenarios.iter().enumerate();
     let mut next = |ends: &mut [End]| {
         let start = |scenario: &'a Scenario| Flight::start(scenario, alone(scenario.case().forces()), interrupt);
-        waiting.find_map(|(index, scenario)| match start(scenario) {
-            Ok(flight) if !scenario.ends_at_start() => Some(Lane { index, flight }),
-            other => {
-                ends[index] = other.map(|flight| flight.at_start());
-                None
+        waiting.find_map(|(index, scenario)| {
+            let begun = start(scenario).and_then(|mut flight| Ok((flight.begin()?, flight)));
+            match begun {
+                Ok((None, flight)) => return Some(Lane { index, flight }),
+                Ok((Some(arrival), _)) => ends[index] = Ok(arrival),
+                Err(error) => ends[index] = Err(error),
             }
+            None
         })
     };
     let mut lanes: [Option<Lane<F>>; L] = from_fn(|_| next(&mut ends));
@@ -74,7 +79,7 @@ fn fly_abreast<'a, F: Formulation, M: System<Lanes<L>, 6>, const L: usize>(
         for (lane, step) in lanes.iter_mut().zip(steps) {
             let (Some(Lane { index, flight }), Some(step)) = (lane.as_mut(), step) else { continue };
             let end = match step {
-                Ok(step) => flight.pass(step, &mut |_| Ok(())).transpose(),
+                Ok(step) => flight.pass(&step, &mut |_| Ok(())).transpose(),
                 Err(error) => Some(Err(flight.failure(error))),
             };
             if let Some(end) = end {

@@ -28,14 +28,19 @@ impl Descent {
     }
 
     /// The part of a step at which it crosses the stop altitude for the first time downwards, a dip inside the step included.
-    pub(super) fn impact<F: Formulation>(&self, passage: &Passage<F>) -> Option<f64> {
+    pub(super) fn impact<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<f64> {
         let end = self.height(&passage.end());
         event::first_fall(self.above, end, passage.step.length(), |part| self.height(&passage.inside(part)))
     }
 
     /// Goes to the end of a step.
-    pub(super) fn follow<F: Formulation>(&mut self, passage: &Passage<F>) {
-        self.above = self.height(&passage.end());
+    pub(super) fn follow<F: Formulation<N>, const N: usize>(&mut self, passage: &Passage<F, N>) {
+        self.go_to(&passage.end());
+    }
+
+    /// Goes to a moment.
+    pub(super) fn go_to(&mut self, moment: &Moment) {
+        self.above = self.height(moment);
     }
 
     pub(super) fn height(&self, moment: &Moment) -> Dual64 {
@@ -46,16 +51,17 @@ impl Descent {
 /// Repeats a step so that it ends where a quantity is zero, which the dense output crosses at `time`.
 ///
 /// The repeated step is more accurate than the dense output: its own crossing is found by Newton's method.
-pub(super) fn land<F: Formulation>(
-    integrator: &mut Integrator<'_, 6>,
+pub(super) fn land<F: Formulation<N>, const N: usize>(
+    integrator: &mut Integrator<'_, N>,
     motion: &F,
-    step: &Step<6>,
+    step: &Step<N>,
     mut time: f64,
     quantity: impl Fn(&Moment) -> Dual64,
-) -> Step<6> {
+) -> Step<N> {
     let mut landing = integrator.shorten(motion, step, time);
     for _ in 0..5 {
-        let above = quantity(&Passage::new(motion, &landing).end());
+        let end = Moment::of::<F, N>(landing.end_time, &landing.end, &landing.end_derivative);
+        let above = quantity(&end);
         // How long before the end of the step its tangent there passes zero.
         let late = above.re / above.eps;
         if late.abs() <= 1e-6 * landing.length() {

@@ -4,14 +4,17 @@ use num_dual::Dual64;
 
 use super::SimulationError;
 use super::passage::{Moment, Passage};
+use crate::coordinates::PlanetFixed;
+use crate::heating::HeatFlux;
 use crate::integrate::{Integrator, event};
 use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Regime};
-use crate::trajectory::{Peak, Peaks, Warning};
+use crate::trajectory::{HeatingPeaks, Instant, Peak, Peaks, Warning};
 
 /// What was seen so far, and the loads with their rates at the end of the last step.
 pub(super) struct Extremes {
     loads: Loads<Dual64>,
-    regime: Regime,
+    /// The number of the phase, and the regime, of the last step.
+    stage: (usize, Regime),
     /// Cosine squared of the angle of the flight against the air less that of the cone in which lift fades; none where there is no lift.
     cone: Option<Dual64>,
     faded: bool,
@@ -20,14 +23,14 @@ pub(super) struct Extremes {
 }
 
 impl Extremes {
-    pub(super) fn new<F: Formulation>(
+    pub(super) fn new<F: Formulation<N>, const N: usize>(
         motion: &F,
-        integrator: &Integrator<6>,
-        has_lift: bool,
+        integrator: &Integrator<N>,
+        may_lift: bool,
     ) -> Result<Self, SimulationError> {
         let forces = motion.forces();
-        let start = Moment::of::<F>(0.0, integrator.state(), integrator.derivative());
-        let loads = finite_loads(forces, &start)?;
+        let start = Moment::of::<F, N>(0.0, integrator.state(), integrator.derivative());
+        let loads = finite(loads_at(forces, &start), 0.0)?;
         let peak = |quantity: Dual64| Peak { value: quantity.re, time: 0.0, altitude: loads.altitude.re };
         let peaks = Peaks {
             deceleration: peak(loads.deceleration),
@@ -35,26 +38,41 @@ impl Extremes {
             dynamic_pressure: peak(loads.dynamic_pressure),
             altitude: peak(loads.altitude),
             mach: loads.mach.map(peak),
+            heating: loads.heat_flux.map(|flux| {
+                let [none, total] = [peak(Dual64::from(0.0)), peak(flux.total())];
+                let [convective_heat_flux, radiative_heat_flux] = [flux.convective, flux.radiative].map(peak);
+                HeatingPeaks {
+                    convective_heat_flux,
+                    radiative_heat_flux,
+                    heat_flux: total,
+                    heat_load: none,
+                    wall_temperature: none,
+                }
+            }),
         };
-        let cone = has_lift.then(|| outside_cone(forces, &start));
+        let cone = may_lift.then(|| outside_cone(forces, &start));
         let faded = cone.is_some_and(|cone| cone.re < 0.0);
         let warnings = if faded { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
-        let mut extremes = Self { loads, regime: forces.regime(), cone, faded, peaks, warnings };
+        let mut extremes = Self { loads, stage: (0, forces.regime()), cone, faded, peaks, warnings };
         extremes.warn_outside_tables(forces, 0.0);
         Ok(extremes)
     }
 
     /// Notes the peaks and warnings of a step.
-    pub(super) fn observe<F: Formulation>(&mut self, passage: &Passage<F>) -> Result<(), SimulationError> {
+    pub(super) fn observe<F: Formulation<N>, const N: usize>(
+        &mut self,
+        passage: &Passage<F, N>,
+    ) -> Result<(), SimulationError> {
         let forces = passage.motion.forces();
-        if forces.regime() != self.regime {
-            // The loads may jump where a formula changes.
-            self.regime = forces.regime();
-            self.loads = finite_loads(forces, &passage.start())?;
+        let stage = (passage.phase, forces.regime());
+        if stage != self.stage {
+            // The loads may jump where a formula changes, and where something happens.
+            self.stage = stage;
+            self.jump(forces, &passage.start())?;
             self.warn_outside_tables(forces, passage.step.start_time);
         }
         let end = passage.end();
-        let loads = finite_loads(forces, &end)?;
+        let loads = finite(*passage.loads_at_end(), end.time.re)?;
         let start = std::mem::replace(&mut self.loads, loads);
         let inside = |part| loads_at(forces, &passage.inside(part));
         let time = |part| passage.step.time(part);
@@ -65,14 +83,7 @@ impl Extremes {
             [ends[0], one, two, three, ends[1]]
         });
         let looks = quarters.as_ref().map_or(&ends[..], |quarters| &quarters[..]);
-        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach } = &mut self.peaks;
-        raise(deceleration, looks, inside, time, |loads| loads.deceleration);
-        raise(load_factor, looks, inside, time, |loads| loads.load_factor);
-        raise(dynamic_pressure, looks, inside, time, |loads| loads.dynamic_pressure);
-        raise(altitude, looks, inside, time, |loads| loads.altitude);
-        if let Some(mach) = mach {
-            raise(mach, looks, inside, time, |loads| loads.mach.unwrap_or(Dual64::from(0.0)));
-        }
+        raise_all(&mut self.peaks, looks, inside, time);
         if let Some(before) = self.cone
             && !self.faded
         {
@@ -87,9 +98,32 @@ impl Extremes {
         Ok(())
     }
 
+    /// Goes to the loads at a moment at which they may have jumped.
+    fn jump(&mut self, forces: &Forces, now: &Moment) -> Result<(), SimulationError> {
+        self.loads = finite(loads_at(forces, now), now.time.re)?;
+        raise_all(&mut self.peaks, &[(0.0, self.loads)], |_| self.loads, |_| now.time.re);
+        Ok(())
+    }
+
+    /// Ends with the flight, whose last instant may have brought a jump.
+    pub(super) fn end(&mut self, forces: &Forces, last: &Instant) -> Result<(), SimulationError> {
+        let Instant { time, state, heat_load, phase, .. } = last;
+        if *phase != self.stage.0 {
+            let state =
+                PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
+            self.jump(forces, &Moment { time: Dual64::from(*time), state })?;
+        }
+        if let (Some(heating), Some(heat_load), Some(nose)) = (&mut self.peaks.heating, heat_load, forces.heating()) {
+            heating.heat_load = Peak { value: *heat_load, time: *time, altitude: self.loads.altitude.re };
+            let value = nose.wall_temperature(heating.heat_flux.value);
+            heating.wall_temperature = Peak { value, ..heating.heat_flux };
+        }
+        Ok(())
+    }
+
     /// Whether a peak may lie inside a step, as far as the rates at its ends tell.
     fn may_rise(&self, start: &Loads<Dual64>, end: &Loads<Dual64>, length: f64) -> bool {
-        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach } = &self.peaks;
+        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach, heating } = &self.peaks;
         let above = |peak: &Peak, quantity: fn(&Loads<Dual64>) -> Dual64| {
             let (start, end) = (quantity(start), quantity(end));
             start.re.max(end.re) + length * start.eps.abs().max(end.eps.abs()) > peak.value
@@ -98,7 +132,12 @@ impl Extremes {
             || above(load_factor, |loads| loads.load_factor)
             || above(dynamic_pressure, |loads| loads.dynamic_pressure)
             || above(altitude, |loads| loads.altitude)
-            || mach.as_ref().is_some_and(|mach| above(mach, |loads| loads.mach.unwrap_or(Dual64::from(0.0))))
+            || mach.as_ref().is_some_and(|mach| above(mach, mach_of))
+            || heating.as_ref().is_some_and(|heating| {
+                above(&heating.convective_heat_flux, |loads| heat_flux_of(loads).convective)
+                    || above(&heating.radiative_heat_flux, |loads| heat_flux_of(loads).radiative)
+                    || above(&heating.heat_flux, |loads| heat_flux_of(loads).total())
+            })
     }
 
     /// Warns of every table outside which the present regime lies, once an edge.
@@ -111,6 +150,42 @@ impl Extremes {
             }
         }
     }
+}
+
+/// Raises every peak to the greatest value that its quantity has in a step, between the looks at it.
+fn raise_all(
+    peaks: &mut Peaks,
+    looks: &[(f64, Loads<Dual64>)],
+    inside: impl Fn(f64) -> Loads<Dual64> + Copy,
+    time: impl Fn(f64) -> f64 + Copy,
+) {
+    let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach, heating } = peaks;
+    raise(deceleration, looks, inside, time, |loads| loads.deceleration);
+    raise(load_factor, looks, inside, time, |loads| loads.load_factor);
+    raise(dynamic_pressure, looks, inside, time, |loads| loads.dynamic_pressure);
+    raise(altitude, looks, inside, time, |loads| loads.altitude);
+    if let Some(mach) = mach {
+        raise(mach, looks, inside, time, mach_of);
+    }
+    if let Some(HeatingPeaks { convective_heat_flux, radiative_heat_flux, heat_flux, .. }) = heating {
+        raise(heat_flux, looks, inside, time, |loads| heat_flux_of(loads).total());
+        // Without radiation so far, the convection is all there is.
+        if radiative_heat_flux.value <= 0.0 && looks.iter().all(|(_, loads)| heat_flux_of(loads).radiative.re <= 0.0) {
+            *convective_heat_flux = *heat_flux;
+        } else {
+            raise(convective_heat_flux, looks, inside, time, |loads| heat_flux_of(loads).convective);
+            raise(radiative_heat_flux, looks, inside, time, |loads| heat_flux_of(loads).radiative);
+        }
+    }
+}
+
+fn mach_of(loads: &Loads<Dual64>) -> Dual64 {
+    loads.mach.unwrap_or(Dual64::from(0.0))
+}
+
+fn heat_flux_of(loads: &Loads<Dual64>) -> HeatFlux<Dual64> {
+    let none = Dual64::from(0.0);
+    loads.heat_flux.unwrap_or(HeatFlux { convective: none, radiative: none })
 }
 
 /// Raises a peak to the greatest value that a quantity has in a step, between the looks at it.
@@ -141,12 +216,11 @@ fn raise(
 }
 
 /// The loads, of which every one must be a finite number.
-fn finite_loads(forces: &Forces, moment: &Moment) -> Result<Loads<Dual64>, SimulationError> {
-    let loads = loads_at(forces, moment);
-    let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor } = loads;
+fn finite(loads: Loads<Dual64>, time: f64) -> Result<Loads<Dual64>, SimulationError> {
+    let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor, heat_flux } = loads;
     let always = [altitude, density, air_speed, dynamic_pressure, deceleration, load_factor];
-    let finite = always.into_iter().chain(mach).all(|x| x.re.is_finite());
-    if finite { Ok(loads) } else { Err(SimulationError::Overflow { time: moment.time.re }) }
+    let finite = always.into_iter().chain(mach).chain(heat_flux.map(|flux| flux.total())).all(|x| x.re.is_finite());
+    if finite { Ok(loads) } else { Err(SimulationError::Overflow { time }) }
 }
 
 fn loads_at(forces: &Forces, moment: &Moment) -> Loads<Dual64> {

@@ -3,27 +3,52 @@
 use std::sync::atomic::AtomicBool;
 
 use super::SimulationError;
+use super::alarms::Alarms;
 use super::descent::{Descent, land};
 use super::passage::{Moment, Passage};
 use super::watch::{Exit, Watch, next_corner};
+use crate::coordinates::PlanetFixed;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
-use crate::motion::{Chatter, Formulation};
-use crate::scenario::Scenario;
-use crate::trajectory::{Arrival, Termination};
+use crate::motion::{self, Chatter, Formulation, heat_load};
+use crate::propulsion::Impulse;
+use crate::scenario::{Phase, Scenario};
+use crate::trajectory::{Arrival, Happening, Instant, Termination, Warning};
 
 /// A flight between its start and its end.
-pub(super) struct Flight<'a, F> {
+pub(super) struct Flight<'a, F, const N: usize> {
     pub(super) scenario: &'a Scenario,
     pub(super) motion: F,
-    pub(super) integrator: Integrator<'a, 6>,
+    pub(super) integrator: Integrator<'a, N>,
     descent: Descent,
     watch: Watch,
+    alarms: Alarms,
+    phase: Phase,
     time: f64,
-    state: [f64; 6],
+    state: [f64; N],
     looks: usize,
+    pub(super) log: Log,
 }
 
-impl<'a, F: Formulation> Flight<'a, F> {
+/// What has happened on the way.
+#[derive(Default)]
+pub(super) struct Log {
+    /// The phases after the first.
+    pub(super) phases: Vec<Phase>,
+    pub(super) happenings: Vec<Happening>,
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// Why a step is cut short.
+enum Cut {
+    /// It meets the stop altitude.
+    Ground,
+    /// It leaves the stretch of a formula.
+    Exit(Exit),
+    /// It meets the condition of this number.
+    Alarm(usize),
+}
+
+impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     pub(super) fn start(
         scenario: &'a Scenario,
         mut motion: F,
@@ -32,95 +57,200 @@ impl<'a, F: Formulation> Flight<'a, F> {
         let case = scenario.case();
         let limits =
             Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
-        let state = F::coordinates(&case.initial_state);
+        let state = F::coordinates(&case.initial_state, 0.0);
         regular(&motion, 0.0, &state)?;
         settle(&mut motion, 0.0, &state)?;
         let integrator = Integrator::new(&motion, state, limits);
-        let start = Moment::of::<F>(0.0, &state, integrator.derivative());
+        let start = Moment::of::<F, N>(0.0, &state, integrator.derivative());
         let mut descent = Descent::new(case.planet.shape, case.stop.altitude, &start);
         if scenario.rises_from_stop_altitude() {
             descent.start_upward();
         }
         let watch = Watch::new(motion.forces(), &start);
-        Ok(Self { scenario, motion, integrator, descent, watch, time: 0.0, state, looks: 0 })
+        let alarms = Alarms::new(case, motion.forces(), &start);
+        let phase = Phase::first(case);
+        let log = Log::default();
+        Ok(Self { scenario, motion, integrator, descent, watch, alarms, phase, time: 0.0, state, looks: 0, log })
     }
 
-    /// The end of a flight that is over before its first step: it starts on the stop altitude, and not upward.
-    pub(super) fn at_start(&self) -> Arrival {
-        self.arrival(Termination::SurfaceImpact)
+    /// What happens at the start; returns the end of the flight, if that was it.
+    pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
+        let ending = self.scenario.ends_at_start().then_some(Termination::SurfaceImpact);
+        if self.alarms.is_empty() { Ok(ending.map(|ending| self.arrival(ending))) } else { self.turn(None, ending) }
     }
 
-    /// When the next step must end at the latest, s: with the time of the flight, or with a stretch of a schedule.
+    /// When the next step must end at the latest, s: with the time of the flight, with a stretch of a schedule, where a condition on
+    /// the time is met, or where the propellant is spent.
     pub(super) fn horizon(&self) -> f64 {
-        let end = self.scenario.case().stop.time;
-        if self.motion.forces().has_switches() { end.min(next_corner(self.motion.forces())) } else { end }
+        let mut end = self.scenario.case().stop.time;
+        if self.motion.forces().has_switches() {
+            end = end.min(next_corner(self.motion.forces()));
+        }
+        if !self.alarms.is_empty() {
+            end = end.min(self.alarms.next_time());
+        }
+        let burn = [self.phase.burnout(), self.phase.last_instant()];
+        burn.into_iter().flatten().fold(end, f64::min)
     }
 
     /// Takes a step.
-    pub(super) fn advance(&mut self) -> Result<Step<6>, SimulationError> {
+    pub(super) fn advance(&mut self) -> Result<Step<N>, SimulationError> {
         let horizon = self.horizon();
         self.integrator.advance(&self.motion, horizon).map_err(|error| self.failure(error))
     }
 
-    /// Looks at a step, which it cuts at the stop altitude and where the formulas of the models change; returns the end of the flight,
-    /// if that was it.
+    /// Looks at a step, which it cuts at the stop altitude, where the formulas of the models change, and where a condition is met;
+    /// returns the end of the flight, if that was it.
     pub(super) fn pass(
         &mut self,
-        mut step: Step<6>,
-        observe: &mut impl FnMut(&Passage<F>) -> Result<(), SimulationError>,
+        step: &Step<N>,
+        observe: &mut impl FnMut(&Passage<F, N>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
-        let Self { motion, integrator, descent, watch, .. } = self;
-        let mut termination = (step.end_time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
-        let mut turns = step.end_time >= next_corner(motion.forces());
-        let mut passage = Passage::new(motion, &step);
-        let impact = descent.impact(&passage);
-        let exit = watch.exit(&passage).filter(|exit| impact.is_none_or(|impact| exit.part < impact));
-        if let Some(part) = exit.map(|exit| exit.part).or(impact) {
+        let horizon = self.horizon();
+        let Self { motion, integrator, descent, watch, alarms, log, .. } = self;
+        let phase = log.phases.len();
+        let (landed, alarmed);
+        let mut passage = Passage::new(motion, step, phase);
+        let mut cut = None;
+        if let Some((part, first)) = first_cut(&passage, descent, watch) {
             self.looks += passage.evaluations();
-            let time = step.time(part);
-            step = land(integrator, motion, &step, time, |moment| match &exit {
-                Some(exit) => exit.inside(motion.forces(), moment),
-                None => descent.height(moment),
+            landed = land(integrator, motion, step, step.time(part), |moment| match &first {
+                Cut::Exit(exit) => exit.inside(motion.forces(), moment),
+                Cut::Ground | Cut::Alarm(_) => descent.height(moment),
             });
-            passage = Passage::new(motion, &step);
-            termination = exit.is_none().then_some(Termination::SurfaceImpact);
-            turns = exit.is_some();
+            passage = Passage::new(motion, &landed, phase);
+            cut = Some(first);
+        }
+        // What is met where the step ends does not cut it again.
+        if let Some((part, index)) = alarms.first(&passage).filter(|(part, _)| *part < AT_END) {
+            self.looks += passage.evaluations();
+            let step = passage.step;
+            alarmed =
+                land(integrator, motion, step, step.time(part), |moment| alarms.before(index, motion.forces(), moment));
+            passage = Passage::new(motion, &alarmed, phase);
+            cut = Some(Cut::Alarm(index));
         }
         descent.follow(&passage);
         watch.follow(&passage);
+        alarms.follow(&passage);
         (self.time, self.state) = (passage.step.end_time, passage.step.end);
         regular(motion, self.time, &self.state)?;
         observe(&passage)?;
         self.looks += passage.evaluations();
-        match termination {
-            // The last instant belongs to what would follow; where nothing could, it belongs to what was.
-            Some(_) => settle(&mut self.motion, self.time, &self.state).unwrap_or(()),
-            None if turns => self.turn(&step, exit)?,
+
+        let mut ending = (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
+        let mut exit = None;
+        let turns = cut.is_some() || self.alarms.is_due() || self.time >= horizon;
+        match cut {
+            Some(Cut::Ground) => ending = Some(Termination::SurfaceImpact),
+            Some(Cut::Exit(left)) => exit = Some(left),
+            Some(Cut::Alarm(index)) => self.alarms.meet(index),
             None => {}
         }
-        Ok(termination.map(|termination| self.arrival(termination)))
+        if turns { self.turn(exit, ending) } else { Ok(None) }
     }
 
-    /// Goes on from the end of a step in the regime that begins there.
-    fn turn(&mut self, step: &Step<6>, exit: Option<Exit>) -> Result<(), SimulationError> {
-        settle(&mut self.motion, step.end_time, &step.end)?;
-        self.integrator.restart(&self.motion, step);
-        let start = Moment::of::<F>(step.end_time, &step.end, self.integrator.derivative());
+    /// Does what happens at the end of a step, and goes on from there in the regime and the phase that begin; returns the end of the
+    /// flight, if that was it.
+    fn turn(&mut self, exit: Option<Exit>, ending: Option<Termination>) -> Result<Option<Arrival>, SimulationError> {
+        let settled = settle(&mut self.motion, self.time, &self.state);
+        // The last instant belongs to what would follow; where nothing could, it belongs to what was.
+        if ending.is_none() {
+            settled?;
+        }
+        if self.phase.burnout().is_some_and(|burnout| self.time >= burnout) {
+            self.log.warnings.push(Warning::PropellantSpent { time: self.time });
+            self.enter(self.phase.burnt_out(self.time))?;
+        }
+        let mut eventless = true;
+        if !self.alarms.is_empty() {
+            self.look();
+            while let Some(event) = self.alarms.next_event() {
+                self.happen(event)?;
+                self.look();
+                eventless = false;
+            }
+        }
+        if let Some(ending) = ending.or_else(|| self.alarms.end()) {
+            return Ok(Some(self.arrival(ending)));
+        }
+        self.integrator.restart(&self.motion, self.time, self.state);
+        let start = Moment::of::<F, N>(self.time, &self.state, self.integrator.derivative());
         let watch = Watch::new(self.motion.forces(), &start);
         let before = std::mem::replace(&mut self.watch, watch);
-        match exit.filter(|exit| exit.is_undone(&before, &watch, self.motion.forces())) {
-            Some(Exit { switch, .. }) => Err(SimulationError::Chatter { time: step.end_time, switch }),
-            None => Ok(()),
+        match exit.filter(|exit| eventless && exit.is_undone(&before, &watch, self.motion.forces())) {
+            Some(Exit { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
+            None => Ok(None),
         }
     }
 
-    /// What an integration error means for the flight: near a singularity, that is the reason.
+    /// Finds the conditions that are met at the present instant.
+    fn look(&mut self) {
+        let derivative = self.motion.derivative(self.time, &self.state);
+        self.looks += 1;
+        let now = Moment::of::<F, N>(self.time, &self.state, &derivative);
+        self.alarms.look(self.motion.forces(), &now);
+    }
+
+    /// Lets an event happen.
+    fn happen(&mut self, event: usize) -> Result<(), SimulationError> {
+        let effect = &self.scenario.case().events[event].then;
+        let before = self.instant();
+        if let Some(impulse) = effect.impulse {
+            self.push(event, impulse);
+        }
+        if !effect.is_none() {
+            self.enter(self.phase.after(effect, self.time))?;
+        }
+        self.log.happenings.push(Happening { event, before, after: self.instant() });
+        Ok(())
+    }
+
+    /// Changes the velocity at once.
+    fn push(&mut self, event: usize, impulse: Impulse) {
+        let PlanetFixed { position, velocity } = F::planet_fixed(&self.state);
+        match motion::direction(impulse.along, &PlanetFixed { position, velocity }) {
+            Some(direction) => {
+                let velocity = velocity + direction * impulse.speed_change;
+                let heat_load = heat_load(&self.state).unwrap_or(0.0);
+                self.state = F::coordinates(&PlanetFixed { position, velocity }, heat_load);
+                let derivative = self.motion.derivative(self.time, &self.state);
+                self.descent.go_to(&Moment::of::<F, N>(self.time, &self.state, &derivative));
+            }
+            None => self.log.warnings.push(Warning::NoDirection { event, time: self.time }),
+        }
+    }
+
+    /// Enters a phase, in the regime of the present state.
+    fn enter(&mut self, phase: Phase) -> Result<(), SimulationError> {
+        *self.motion.forces_mut() = phase.forces(self.scenario.case());
+        self.phase = phase.clone();
+        self.log.phases.push(phase);
+        regular(&self.motion, self.time, &self.state)?;
+        settle(&mut self.motion, self.time, &self.state)
+    }
+
+    /// The present instant.
+    pub(super) fn instant(&self) -> Instant {
+        Instant {
+            time: self.time,
+            state: F::planet_fixed(&self.state),
+            heat_load: heat_load(&self.state),
+            phase: self.log.phases.len(),
+            regime: self.motion.forces().regime(),
+        }
+    }
+
+    /// What an integration error means for the flight: near a singularity, or where hardly anything is left to fly, that is the reason.
     pub(super) fn failure(&self, error: IntegrationError) -> SimulationError {
         let (time, otherwise) = match error {
             IntegrationError::StepLimit { time, limit } => (time, SimulationError::StepLimit { time, limit }),
             IntegrationError::StepTooSmall { time } => (time, SimulationError::TooStiff { time }),
             IntegrationError::Interrupted { time } => return SimulationError::Interrupted { time },
         };
+        if self.phase.mass(time) < NEARLY_NOTHING * self.phase.vehicle.mass {
+            return SimulationError::NothingLeft { time };
+        }
         match self.motion.singularity(&self.state, NEARLY_SINGULAR) {
             Some(at) => SimulationError::Singularity { time, at },
             None => otherwise,
@@ -130,18 +260,40 @@ impl<'a, F: Formulation> Flight<'a, F> {
     fn arrival(&self, termination: Termination) -> Arrival {
         let mut statistics = self.integrator.statistics();
         statistics.evaluations += self.looks;
-        Arrival { termination, time: self.time, state: F::planet_fixed(&self.state), statistics }
+        let heat_load = heat_load(&self.state);
+        Arrival { termination, time: self.time, state: F::planet_fixed(&self.state), heat_load, statistics }
+    }
+}
+
+/// The part of a step at which it meets the stop altitude or leaves the stretch of a formula, whichever comes first.
+fn first_cut<F: Formulation<N>, const N: usize>(
+    passage: &Passage<F, N>,
+    descent: &Descent,
+    watch: &Watch,
+) -> Option<(f64, Cut)> {
+    let impact = descent.impact(passage);
+    match watch.exit(passage).filter(|exit| impact.is_none_or(|impact| exit.part < impact)) {
+        Some(exit) => Some((exit.part, Cut::Exit(exit))),
+        None => impact.map(|part| (part, Cut::Ground)),
     }
 }
 
 /// Enters the regime of a state.
-fn settle<F: Formulation>(motion: &mut F, time: f64, state: &[f64; 6]) -> Result<(), SimulationError> {
+fn settle<F: Formulation<N>, const N: usize>(
+    motion: &mut F,
+    time: f64,
+    state: &[f64; N],
+) -> Result<(), SimulationError> {
     let state = F::planet_fixed(state);
     motion.forces_mut().settle(time, &state).map_err(|Chatter(switch)| SimulationError::Chatter { time, switch })
 }
 
 /// Refuses a state in which the equations break down.
-pub(super) fn regular<F: Formulation>(motion: &F, time: f64, state: &[f64; 6]) -> Result<(), SimulationError> {
+pub(super) fn regular<F: Formulation<N>, const N: usize>(
+    motion: &F,
+    time: f64,
+    state: &[f64; N],
+) -> Result<(), SimulationError> {
     match motion.singularity(state, SINGULAR) {
         Some(at) => Err(SimulationError::Singularity { time, at }),
         None => Ok(()),
@@ -152,3 +304,7 @@ pub(super) fn regular<F: Formulation>(motion: &F, time: f64, state: &[f64; 6]) -
 const SINGULAR: f64 = 1e-8;
 /// An integration that fails this close to a singularity fails because of it.
 const NEARLY_SINGULAR: f64 = 1e-2;
+/// From this part of a step on, a place counts as its end.
+const AT_END: f64 = 1.0 - 1e-9;
+/// An integration that fails where no more than this part of the mass is left fails because of it.
+const NEARLY_NOTHING: f64 = 1e-2;

@@ -5,8 +5,9 @@ use std::cell::OnceCell;
 use num_dual::Dual64;
 
 use crate::coordinates::PlanetFixed;
+use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Formulation, moving};
+use crate::motion::{Formulation, Loads, Switch, moving};
 
 /// A time and the state then, both moving along the flow: what is computed from them comes with its rate of change.
 pub(super) struct Moment {
@@ -15,43 +16,82 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    /// Of a formulation's six numbers and their rates.
-    pub(super) fn of<F: Formulation>(time: f64, state: &[f64; 6], derivative: &[f64; 6]) -> Self {
+    /// Of a formulation's numbers and their rates.
+    pub(super) fn of<F: Formulation<N>, const N: usize>(time: f64, state: &[f64; N], derivative: &[f64; N]) -> Self {
         Self { time: Dual64::new(time, 1.0), state: F::planet_fixed(&moving(state, derivative)) }
     }
 }
 
 /// A step that was flown.
-pub(super) struct Passage<'a, F> {
-    pub(super) step: &'a Step<6>,
+pub(super) struct Passage<'a, F, const N: usize> {
+    pub(super) step: &'a Step<N>,
     pub(super) motion: &'a F,
-    interpolant: OnceCell<Interpolant<6>>,
+    /// The number of the phase to which it belongs.
+    pub(super) phase: usize,
+    interpolant: OnceCell<Interpolant<N>>,
+    loads_at_end: OnceCell<Loads<Dual64>>,
+    quantities_at_end: [OnceCell<Dual64>; Quantity::ALL.len()],
+    readings_at_end: OnceCell<[Dual64; Switch::ALL.len()]>,
 }
 
-impl<'a, F: Formulation> Passage<'a, F> {
-    pub(super) fn new(motion: &'a F, step: &'a Step<6>) -> Self {
-        Self { step, motion, interpolant: OnceCell::new() }
+impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
+    pub(super) fn new(motion: &'a F, step: &'a Step<N>, phase: usize) -> Self {
+        Self {
+            step,
+            motion,
+            phase,
+            interpolant: OnceCell::new(),
+            loads_at_end: OnceCell::new(),
+            quantities_at_end: Default::default(),
+            readings_at_end: OnceCell::new(),
+        }
     }
 
     /// The state at the start, moving along the flow.
     pub(super) fn start(&self) -> Moment {
-        Moment::of::<F>(self.step.start_time, &self.step.start, &self.step.start_derivative)
+        Moment::of::<F, N>(self.step.start_time, &self.step.start, &self.step.start_derivative)
     }
 
     /// The state at the given part of the step, moving along the flow.
     pub(super) fn inside(&self, part: f64) -> Moment {
         let time = self.step.time(part);
         let state = self.interpolant.get_or_init(|| self.step.interpolant(self.motion)).state(part);
-        Moment::of::<F>(time, &state, &self.motion.derivative(time, &state))
+        Moment::of::<F, N>(time, &state, &self.motion.derivative(time, &state))
     }
 
     /// The state at the end, moving along the flow.
     pub(super) fn end(&self) -> Moment {
-        Moment::of::<F>(self.step.end_time, &self.step.end, &self.step.end_derivative)
+        Moment::of::<F, N>(self.step.end_time, &self.step.end, &self.step.end_derivative)
+    }
+
+    /// The loads at the end.
+    pub(super) fn loads_at_end(&self) -> &Loads<Dual64> {
+        self.loads_at_end.get_or_init(|| {
+            let Moment { time, state } = self.end();
+            self.motion.forces().loads(time, &state)
+        })
+    }
+
+    /// What an event may wait for, at the end.
+    pub(super) fn quantity_at_end(&self, quantity: Quantity) -> Dual64 {
+        *self.quantities_at_end[quantity as usize].get_or_init(|| {
+            let Moment { time, state } = self.end();
+            self.loads_at_end()
+                .quantity(quantity)
+                .unwrap_or_else(|| self.motion.forces().quantity(quantity, time, &state))
+        })
+    }
+
+    /// The quantities of the switches, at the end.
+    pub(super) fn readings_at_end(&self) -> &[Dual64; Switch::ALL.len()] {
+        self.readings_at_end.get_or_init(|| {
+            let Moment { time, state } = self.end();
+            self.motion.forces().readings(time, &state)
+        })
     }
 
     /// What looking inside has cost: evaluations of the derivative for the interpolation.
     pub(super) fn evaluations(&self) -> usize {
-        if self.interpolant.get().is_some() { Interpolant::<6>::EVALUATIONS } else { 0 }
+        if self.interpolant.get().is_some() { Interpolant::<N>::EVALUATIONS } else { 0 }
     }
 }

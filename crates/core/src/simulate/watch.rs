@@ -61,12 +61,12 @@ impl Watch {
     }
 
     /// Where a step first leaves its stretches, if it does; those of time it does not leave, since no step goes beyond.
-    pub(super) fn exit<F: Formulation>(&self, passage: &Passage<F>) -> Option<Exit> {
+    pub(super) fn exit<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<Exit> {
         let forces = passage.motion.forces();
         if !forces.has_switches() {
             return None;
         }
-        let ends = read(forces, &passage.end());
+        let ends = *passage.readings_at_end();
         let mut first: Option<Exit> = None;
         for switch in Switch::ALL {
             let [start, end] = [self.readings, ends].map(|readings| readings[switch as usize]);
@@ -86,9 +86,9 @@ impl Watch {
     }
 
     /// Goes to the end of a step.
-    pub(super) fn follow<F: Formulation>(&mut self, passage: &Passage<F>) {
+    pub(super) fn follow<F: Formulation<N>, const N: usize>(&mut self, passage: &Passage<F, N>) {
         if passage.motion.forces().has_switches() {
-            self.readings = read(passage.motion.forces(), &passage.end());
+            self.readings = *passage.readings_at_end();
         }
     }
 }

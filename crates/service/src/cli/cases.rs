@@ -189,7 +189,7 @@ fn name(case: &RawValue) -> String {
     tree["name"].as_str().map_or_else(String::new, |name| format!(" {name:?}"))
 }
 
-fn with_line_end(mut text: Vec<u8>) -> Vec<u8> {
+pub(super) fn with_line_end(mut text: Vec<u8>) -> Vec<u8> {
     if !text.ends_with(b"\n") {
         text.push(b'\n');
     }

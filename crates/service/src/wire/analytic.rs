@@ -13,9 +13,10 @@ use super::reader::{self, Fault};
 use super::scenario::{Job, SimulateRequest, Wanted};
 use super::sensitivities::Sensitivities;
 use super::state::State;
-use super::trajectory::{Extras, Warning};
+use super::trajectory::Extras;
 use super::vehicle::Aerodynamics;
 use super::verification::Verification;
+use super::warning::Warning;
 use super::wind::Wind;
 
 /// The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.
@@ -112,6 +113,9 @@ impl AnalyticJob {
             let detail = "must be left out: this answer has columns of its own";
             misplaced.push(Fault::new("/output/columns", detail));
         }
+        if request.heating.is_some() {
+            misplaced.push(Fault::new("/heating", "must be left out: the theories know no heating"));
+        }
         if sampling.is_none() {
             let detail = "must not be false: the predictions are made at the rows of the flight";
             misplaced.push(Fault::new("/output/trajectory", detail));
@@ -153,6 +157,7 @@ fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
         TheoryFault::NoAir => "/atmosphere/surface_density",
         TheoryFault::NotExponential => "/atmosphere/type",
         TheoryFault::NoDensity => "/density_factor",
+        TheoryFault::Events => "/events",
         TheoryFault::NoDescent { .. } if has_angle => "/initial_state/flight_path_angle",
         TheoryFault::NoDescent { .. } | TheoryFault::NoAirAtEntry => "/initial_state",
     };

@@ -180,7 +180,7 @@ impl ExponentialAtmosphere {
 impl LayeredAtmosphere {
     fn read(object: &mut Object) -> Option<Self> {
         let layers = object.has("layers").then(|| {
-            let layers = object.objects("layers", Layer::read)?;
+            let layers = object.objects("layers", [1, MOST_ENTRIES], Layer::read)?;
             let bases: Vec<_> = layers.iter().map(|layer| layer.base_altitude).collect();
             object.ascending("layers", "/base_altitude", &bases).then_some(layers)
         });

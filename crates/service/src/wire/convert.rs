@@ -15,7 +15,7 @@ use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::scenario::read_epoch;
 use super::state::{Ecef, Eci, Geodetic, InertialFlightPath, OrbitalElements, PlanetRelative, State};
-use super::trajectory::Warning;
+use super::warning::Warning;
 
 /// A state to convert. SI units; angles in `angle_unit`.
 #[derive(Clone, Debug, ToSchema)]

@@ -271,15 +271,30 @@ impl Object<'_> {
         sound.then(|| chosen.into_iter().map(|choice| choices[choice].1).collect())
     }
 
-    /// Objects, one or more.
-    pub fn objects<T>(&mut self, name: &'static str, mut read: impl FnMut(&mut Object) -> Option<T>) -> Option<Vec<T>> {
+    /// Objects, so many at most; without the field there are none.
+    pub fn optional_objects<T>(
+        &mut self,
+        name: &'static str,
+        most: usize,
+        read: impl FnMut(&mut Object) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        if self.has(name) { self.objects(name, [0, most], read) } else { Some(Vec::new()) }
+    }
+
+    /// Objects, so many at least and at most.
+    pub fn objects<T>(
+        &mut self,
+        name: &'static str,
+        counts: [usize; 2],
+        mut read: impl FnMut(&mut Object) -> Option<T>,
+    ) -> Option<Vec<T>> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let Value::Array(elements) = value else {
             return self.check(name, Err(format!("must be an array of objects, got {kind}")), Ok);
         };
         let count = elements.len();
-        if let Some(detail) = wrong_count(count, [1, MOST_ENTRIES]) {
+        if let Some(detail) = wrong_count(count, counts) {
             return self.check(name, Err(detail), Ok);
         }
         let place = format!("{}/{name}", self.pointer);
@@ -420,6 +435,24 @@ impl Object<'_> {
         }
     }
 
+    /// A word or an object with its own reader; anything else is told what it is to be.
+    pub fn word_or_object<T>(
+        &mut self,
+        name: &'static str,
+        (word, meaning): (&str, T),
+        object: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        match self.required(name)? {
+            Value::String(given) if given == word => Some(meaning),
+            Value::Object(_) => self.object(name, object),
+            other => {
+                let got =
+                    other.as_str().map_or_else(|| kind_of(other).to_owned(), |given| format!("{:?}", shortened(given)));
+                self.check(name, Err(format!("must be {word:?} or an object, got {got}")), Ok)
+            }
+        }
+    }
+
     /// Whether the object in the field is of this kind by its `type`, whatever else is wrong with it.
     pub fn is_of_kind(&self, name: &str, kind: &str) -> bool {
         self.map.get(name).is_some_and(|object| object["type"] == kind)
@@ -438,6 +471,15 @@ impl Object<'_> {
         self.required(name)?;
         let value = self.map.get_mut(name)?;
         object(value, pointer, self.context, read)
+    }
+
+    /// An object that may be left out: then there is nothing, and no fault, `Some(None)`.
+    pub fn optional_object<T>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<Option<T>> {
+        if self.has(name) { self.object(name, read).map(Some) } else { Some(None) }
     }
 
     /// An object with a default.

@@ -9,13 +9,15 @@ use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::atmosphere::Atmosphere;
+use super::columns::{COLUMNS, Column, Known};
 use super::control::Control;
 use super::epoch::Instant;
+use super::events::{Condition, Event, MOST_EVENTS};
+use super::heating::Heating;
 use super::json::shown;
 use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::state::State;
-use super::trajectory::{COLUMNS, Column, Known};
 use super::vehicle::Vehicle;
 use super::wind::Wind;
 
@@ -58,6 +60,12 @@ pub struct SimulateRequest {
     /// How it is flown.
     #[schema(required = false)]
     pub control: Control,
+    /// How it is heated; without it, no heat flux is computed.
+    #[schema(required = false, value_type = Heating)]
+    pub heating: Option<Heating>,
+    /// What happens on the way.
+    #[schema(required = false, max_items = 1000)]
+    pub events: Vec<Event>,
     /// Where it starts, and how it moves.
     pub initial_state: State,
     /// When the flight ends.
@@ -72,7 +80,7 @@ pub struct SimulateRequest {
 }
 
 /// When the flight ends, whichever comes first.
-#[derive(Clone, Copy, Debug, ToSchema)]
+#[derive(Clone, Debug, ToSchema)]
 pub struct Stop {
     /// The altitude along the radius vector whose downward crossing ends the flight, m; above the planet's centre.
     #[schema(required = false, minimum = -1e12, maximum = 1e12, default = 0)]
@@ -80,6 +88,12 @@ pub struct Stop {
     /// s.
     #[schema(required = false, exclusive_minimum = 0, maximum = 1e9, default = 10000)]
     pub time: f64,
+    /// The altitude along the radius vector whose upward crossing ends the flight, m; above `altitude`.
+    #[schema(required = false, value_type = f64, minimum = -1e12, maximum = 1e12)]
+    pub ceiling: Option<f64>,
+    /// Conditions, each of which ends the flight; of those of one instant the first.
+    #[schema(required = false, max_items = 1000)]
+    pub when: Vec<Condition>,
 }
 
 /// The rows of the trajectory: exactly one of the first five, which with `columns` alone is `"samples_per_step": 4`.
@@ -194,9 +208,11 @@ impl SimulateRequest {
         let planet = object.object_or("planet", json!({}), Planet::read);
         let atmosphere = object.object_or("atmosphere", json!({"type": "exponential"}), Atmosphere::read);
         let density_factor = object.number_or("density_factor", Bound::NON_NEGATIVE, 1.0);
-        let wind = object.has("wind").then(|| object.object("wind", Wind::read));
+        let wind = object.optional_object("wind", Wind::read);
         let vehicle = object.object("vehicle", Vehicle::read);
         let control = object.object_or("control", json!({}), Control::read);
+        let heating = object.optional_object("heating", Heating::read);
+        let events = object.optional_objects("events", MOST_EVENTS, Event::read);
         let has_epoch = object.has("epoch");
         let initial_state = object.object("initial_state", |object| {
             if !has_epoch {
@@ -217,9 +233,11 @@ impl SimulateRequest {
             planet: planet?,
             atmosphere: atmosphere?,
             density_factor: density_factor?,
-            wind: wind.flatten(),
+            wind: wind?,
             vehicle: vehicle?,
             control: control?,
+            heating: heating?,
+            events: events?,
             initial_state: initial_state?,
             stop: stop?,
             output: output?,
@@ -249,14 +267,21 @@ impl SimulateRequest {
     /// What there is to know at an instant of the flight.
     pub fn known(&self) -> Known {
         let air = self.atmosphere.to_core();
-        Known { temperature: air.has_temperature(), pressure: air.has_pressure(), epoch: self.epoch }
+        Known {
+            temperature: air.has_temperature(),
+            pressure: air.has_pressure(),
+            epoch: self.epoch,
+            heating: self.heating.is_some(),
+            changing_mass: self.events.iter().any(Event::changes_mass),
+        }
     }
 
     pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
         let planet = self.planet.core;
-        let stop = scenario::Stop { altitude: self.stop.altitude, time: self.stop.time };
+        let stop = self.stop.to_core(self.angle_unit);
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &planet);
         let mut faults: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
+        faults.extend(Event::missing_areas(&self.events, &self.vehicle));
         let initial_state = match initial_state {
             Ok((state, _)) if faults.is_empty() => state,
             Ok(_) => return Err(faults),
@@ -272,6 +297,8 @@ impl SimulateRequest {
             wind: self.wind.as_ref().map_or(CoreWind::Still, Wind::to_core),
             vehicle: self.vehicle.to_core(),
             control: self.control.to_core(self.angle_unit),
+            heating: self.heating.map(Heating::to_core),
+            events: self.events.iter().map(|event| event.to_core(self.angle_unit)).collect(),
             initial_state,
             stop,
             solver: self.solver.to_core(),
@@ -286,6 +313,9 @@ pub fn fault(fault: &scenario::Fault) -> Fault {
         scenario::Fault::OutOfBounds { field, .. } | scenario::Fault::NoTemperature { field } => {
             format!("/{}", field.replace('.', "/"))
         }
+        scenario::Fault::TimeFalls { field } => format!("/{}", field.replace('.', "/")),
+        scenario::Fault::LowCeiling { .. } => "/stop/ceiling".to_owned(),
+        scenario::Fault::NoNoseRadius => "/vehicle/nose_radius".to_owned(),
         scenario::Fault::OddShape { .. } => "/planet/polar_radius".to_owned(),
         scenario::Fault::StopBelowCentre { .. } => "/stop/altitude".to_owned(),
         scenario::Fault::AtCentre
@@ -307,7 +337,14 @@ impl Stop {
         let default = scenario::Stop::default();
         let altitude = object.number_or("altitude", Bound::DISTANCE, default.altitude);
         let time = object.number_or("time", Bound::STOP_TIME, default.time);
-        Some(Self { altitude: altitude?, time: time? })
+        let ceiling = object.optional_number("ceiling", Bound::DISTANCE);
+        let when = object.optional_objects("when", MOST_EVENTS, Condition::read);
+        Some(Self { altitude: altitude?, time: time?, ceiling, when: when? })
+    }
+
+    fn to_core(&self, unit: AngleUnit) -> scenario::Stop {
+        let Self { altitude, time, ceiling, ref when } = *self;
+        scenario::Stop { altitude, time, ceiling, when: when.iter().map(|when| when.to_core(unit)).collect() }
     }
 }
 

@@ -9,13 +9,14 @@ mod kml;
 
 use std::iter;
 
-use reentry::trajectory::{FlightPoint, Trajectory};
+use reentry::trajectory::{EventPoint, FlightPoint, Trajectory};
 use serde::Serialize;
 use serde_json::json;
 
+use super::columns::Columns;
 use super::epoch::{Instant, Utc};
 use super::reader::Fault;
-use super::trajectory::{Columns, Peak, Peaks, SimulateResponse};
+use super::trajectory::{Peak, SimulateResponse};
 
 /// A flight, ready to be drawn.
 #[derive(Clone, Debug)]
@@ -91,7 +92,7 @@ impl<'a> Track<'a> {
     }
 }
 
-/// Everything that is marked: the end, then the peaks.
+/// Everything that is marked: the end, the peaks, and the events.
 fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Instant>) -> Vec<NamedPoint> {
     let point = |kind, name, (quantity, value, unit), point: &FlightPoint| NamedPoint {
         name,
@@ -108,19 +109,29 @@ fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Instant>
     let last = flight.last();
     let termination = json!(answer.termination);
     let end = point("end", words(termination.as_str().unwrap_or_default()), speed(&last), &last);
-    let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach } = answer.peaks;
+    let peaks = &answer.peaks;
     let peaks = [
-        ("deceleration", "m/s²", Some(deceleration)),
-        ("load_factor", "g", Some(load_factor)),
-        ("dynamic_pressure", "Pa", Some(dynamic_pressure)),
-        ("altitude", "m", Some(altitude)),
-        ("mach", "", mach),
+        ("deceleration", "m/s²", Some(peaks.deceleration)),
+        ("load_factor", "g", Some(peaks.load_factor)),
+        ("dynamic_pressure", "Pa", Some(peaks.dynamic_pressure)),
+        ("altitude", "m", Some(peaks.altitude)),
+        ("mach", "", peaks.mach),
+        ("convective_heat_flux", "W/m²", peaks.convective_heat_flux),
+        ("radiative_heat_flux", "W/m²", peaks.radiative_heat_flux.filter(|peak| peak.value > 0.0)),
+        ("heat_flux", "W/m²", peaks.heat_flux),
+        ("heat_load", "J/m²", peaks.heat_load),
+        ("wall_temperature", "K", peaks.wall_temperature),
     ];
     let peaks = peaks.into_iter().filter_map(|(quantity, unit, peak)| {
         let Peak { value, time, .. } = peak?;
         Some(point("peak", format!("peak {}", words(quantity)), (quantity, value, unit), &flight.at(time)))
     });
-    iter::once(end).chain(peaks).collect()
+    let names = answer.events.iter().flatten();
+    let events = names.zip(flight.events()).map(|(report, EventPoint { before, .. })| {
+        let name = report.name.clone().unwrap_or_else(|| format!("event {}", report.index));
+        point("event", name, speed(&before), &before)
+    });
+    iter::once(end).chain(peaks).chain(events).collect()
 }
 
 impl Vertex {

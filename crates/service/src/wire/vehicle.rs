@@ -23,6 +23,9 @@ pub struct Vehicle {
     pub reference_area: Option<f64>,
     /// Lift and drag.
     pub aerodynamics: Aerodynamics,
+    /// Of the nose at its stagnation point, m; required with `heating`.
+    #[schema(required = false, value_type = f64, exclusive_minimum = 0)]
+    pub nose_radius: Option<f64>,
 }
 
 /// Lift and drag coefficients.
@@ -129,8 +132,9 @@ impl Vehicle {
         let by_area = !object.is_of_kind("aerodynamics", "ballistic");
         let reference_area = by_area.then(|| object.number("reference_area", Bound::NON_NEGATIVE));
         let aerodynamics = object.object("aerodynamics", Aerodynamics::read);
+        let nose_radius = object.optional_number("nose_radius", Bound::POSITIVE);
         let reference_area = if by_area { Some(reference_area.flatten()?) } else { None };
-        Some(Self { mass: mass?, reference_area, aerodynamics: aerodynamics? })
+        Some(Self { mass: mass?, reference_area, aerodynamics: aerodynamics?, nose_radius })
     }
 
     pub(super) fn to_core(&self) -> CoreVehicle {
@@ -139,12 +143,13 @@ impl Vehicle {
             // With ratios alone, any area does.
             reference_area: self.reference_area.unwrap_or(1.0),
             aerodynamics: self.aerodynamics.to_core(),
+            nose_radius: self.nose_radius,
         }
     }
 }
 
 impl Aerodynamics {
-    fn read(object: &mut Object) -> Option<Self> {
+    pub(super) fn read(object: &mut Object) -> Option<Self> {
         let read = object.choice::<fn(&mut Object) -> Option<Self>>(
             "type",
             &[
@@ -157,7 +162,7 @@ impl Aerodynamics {
         read(object)
     }
 
-    fn to_core(&self) -> CoreAerodynamics {
+    pub(super) fn to_core(&self) -> CoreAerodynamics {
         match self {
             Self::Constant(ConstantAerodynamics { lift_coefficient, drag_coefficient, .. }) => {
                 CoreAerodynamics::Constant { lift_coefficient: *lift_coefficient, drag_coefficient: *drag_coefficient }

@@ -1,0 +1,158 @@
+//! What acts on the vehicle at an instant, and what an event may wait for.
+
+use super::directions::{Directions, lift_fade_over_cosine};
+use super::{Flow, Forces, Parameters, Switch};
+use crate::atmosphere::AtmosphereSample;
+use crate::coordinates::PlanetFixed;
+use crate::event::Quantity;
+use crate::heating::{HeatFlux, Stagnation};
+use crate::planet::Pull;
+use crate::propulsion::STANDARD_GRAVITY;
+use crate::scalar::{Over, Scalar, length};
+use crate::vehicle::Coefficients;
+use crate::wind::Wind;
+
+/// What the air does to the vehicle at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loads<S> {
+    /// Along the radius vector, above the surface, m.
+    pub altitude: S,
+    /// kg/m³.
+    pub density: S,
+    /// Relative to the air, m/s.
+    pub air_speed: S,
+    /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
+    pub mach: Option<S>,
+    /// ½ρV² of the speed relative to the air, Pa.
+    pub dynamic_pressure: S,
+    /// -dV/dt of the relative speed, m/s²; at rest minus the magnitude of the acceleration.
+    pub deceleration: S,
+    /// The force that is not gravity, lift, drag and thrust together, over the weight at standard gravity: what is felt on board.
+    pub load_factor: S,
+    /// Into the stagnation point, where heating is asked for.
+    pub heat_flux: Option<HeatFlux<S>>,
+}
+
+impl<S: Scalar> Loads<S> {
+    /// What an event may wait for, as far as it is one of the loads.
+    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<S> {
+        match quantity {
+            Quantity::Altitude => Some(self.altitude),
+            Quantity::Mach => self.mach,
+            Quantity::DynamicPressure => Some(self.dynamic_pressure),
+            Quantity::LoadFactor => Some(self.load_factor),
+            Quantity::Time | Quantity::Speed | Quantity::FlightPathAngle => None,
+        }
+    }
+}
+
+impl<P: Scalar> Forces<P> {
+    /// The loads in a state.
+    pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &PlanetFixed<S>) -> Loads<S> {
+        let PlanetFixed { position, velocity } = state;
+        let mut flow = self.flow::<false, _>(state);
+        if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
+            let (density, sound) = self.models.atmosphere.density_and_sound(
+                self.regime.of(Switch::Atmosphere),
+                flow.altitude,
+                &self.cells.atmosphere,
+            );
+            flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
+        }
+        let Directions { radius, speed, up, ahead, .. } = &flow.directions;
+        let density = self.density::<false, _>(&flow);
+        let dynamic_pressure = density * *speed * *speed * 0.5;
+        let air = self.air::<false, _>(time, &flow);
+        let deceleration = if flow.ground_speed.less_than(f64::MIN_POSITIVE) {
+            -length(&self.acceleration(time, state))
+        } else if matches!(self.models.wind, Wind::Still) && self.burn.is_none() {
+            // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
+            let outward = position.x * ahead.x + position.y * ahead.y;
+            let Pull { inward, axial } = self.models.planet.pull(*radius, up.z);
+            air.drag * density + (inward * up.dot(ahead) + axial * ahead.z)
+                - outward * self.models.planet.rotation_rate.powi(2)
+        } else {
+            -self.acceleration(time, state).dot(velocity) * flow.ground_speed.recip()
+        };
+        let load_factor = self.load_factor(time, state, &flow, dynamic_pressure);
+        let mach = flow.density_and_mach.map(|(_, mach)| mach);
+        let heat_flux = self.heat_flux(density, *speed);
+        Loads {
+            altitude: flow.altitude,
+            density,
+            air_speed: *speed,
+            mach,
+            dynamic_pressure,
+            deceleration,
+            load_factor,
+            heat_flux,
+        }
+    }
+
+    /// The force that is not gravity over the weight at standard gravity.
+    fn load_factor<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>, flow: &Flow<S>, dynamic_pressure: S) -> S {
+        if let Some(thrust) = self.thrust(time, state) {
+            return length(&(self.aerodynamic::<false, _>(time, flow) + thrust)) * STANDARD_GRAVITY.recip();
+        }
+        // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
+        let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, flow);
+        let cos_gamma = flow.directions.cos_gamma;
+        let lift_coefficient = lift_coefficient * (lift_fade_over_cosine(cos_gamma) * cos_gamma);
+        let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
+        dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY)
+    }
+
+    /// What an event may wait for, in a state.
+    pub fn quantity<S: Over<P> + Scalar<Mask = bool>>(&self, quantity: Quantity, time: S, state: &PlanetFixed<S>) -> S {
+        let PlanetFixed { position, velocity } = state;
+        match quantity {
+            Quantity::Time => time,
+            Quantity::Altitude => self.models.planet.shape.altitude(position),
+            Quantity::Speed => length(velocity),
+            Quantity::FlightPathAngle => position.dot(velocity).atan2(length(&position.cross(velocity))),
+            Quantity::Mach | Quantity::DynamicPressure | Quantity::LoadFactor => {
+                self.loads(time, state).quantity(quantity).unwrap_or_else(S::zero)
+            }
+        }
+    }
+
+    fn lift_and_drag_coefficient<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
+        let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
+        let Coefficients { lift, drag } =
+            self.coefficients::<false, _>(time, flow).unwrap_or(Coefficients { lift: S::zero(), drag: S::zero() });
+        (lift + lift_coefficient, drag + drag_coefficient)
+    }
+
+    /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
+    pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &PlanetFixed<S>) -> S {
+        let left = self.flow::<false, _>(state).directions.left;
+        left.dot(&left)
+    }
+}
+
+impl Forces {
+    /// The heating of the nose, where it is asked for.
+    pub(crate) fn heating(&self) -> Option<&Stagnation> {
+        self.models.heating.as_ref()
+    }
+
+    /// The angles at which the vehicle flies in a state: σ and α, rad.
+    pub fn angles(&self, time: f64, state: &PlanetFixed<f64>) -> [f64; 2] {
+        let flow = self.flow::<false, _>(state);
+        [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
+    }
+
+    /// The air in a state, as far as the atmosphere knows it.
+    pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
+        let altitude = self.models.planet.shape.altitude(&state.position);
+        let sample =
+            self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
+        // By the law of gases, denser air of the same temperature presses harder.
+        let factor = self.parameters.density;
+        AtmosphereSample {
+            density: sample.density * factor,
+            pressure: sample.pressure.map(|pressure| pressure * factor),
+            ..sample
+        }
+    }
+}

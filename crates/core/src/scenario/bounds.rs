@@ -1,0 +1,205 @@
+//! The values that the numbers of a case may have.
+
+use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt;
+
+use super::{Case, Fault, Plain};
+use crate::atmosphere::Atmosphere;
+use crate::control::Command;
+use crate::event::{Condition, Effect, Engine, Quantity};
+use crate::planet::{Gravity, Zonal};
+use crate::vehicle::Aerodynamics;
+use crate::wind::Wind;
+
+/// The values that a number may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// The least value.
+    pub minimum: f64,
+    /// Whether the least value itself is left out.
+    pub exclusive: bool,
+    /// The greatest value.
+    pub maximum: f64,
+}
+
+impl Bound {
+    /// Every finite number.
+    pub const FINITE: Self = Self::between(f64::MIN, f64::MAX);
+    /// mass, scale height, ballistic coefficient.
+    pub const POSITIVE: Self = Self::above(0.0, f64::MAX);
+    /// reference area, density and its factor, drag coefficient, eccentricity.
+    pub const NON_NEGATIVE: Self = Self::between(0.0, f64::MAX);
+    /// Speeds, m/s.
+    pub const SPEED: Self = Self::between(0.0, 1e6);
+    /// Components of a velocity relative to the rotating planet, m/s.
+    pub const VELOCITY: Self = Self::between(-1e6, 1e6);
+    /// Coordinates and altitudes, m.
+    pub const DISTANCE: Self = Self::between(-1e12, 1e12);
+    /// Radii of planets, m.
+    pub const PLANET_RADIUS: Self = Self::between(1.0, 1e12);
+    /// Distances from the planet's centre, m.
+    pub const RADIUS: Self = Self::above(0.0, 1e12);
+    /// Latitudes and flight-path angles, rad.
+    pub const QUARTER_TURN: Self = Self::between(-FRAC_PI_2, FRAC_PI_2);
+    /// The inclination, rad.
+    pub const HALF_TURN: Self = Self::between(0.0, PI);
+    /// Every other angle, rad.
+    pub const TURN: Self = Self::between(-TAU, TAU);
+    /// Gravitational parameters, m³/s², from that of a boulder on; the Sun's is 1.3e20.
+    pub const GRAVITATIONAL_PARAMETER: Self = Self::between(1e-6, 1e25);
+    /// Rotation rates, rad/s.
+    pub const ROTATION_RATE: Self = Self::between(-1.0, 1.0);
+    /// Coefficients of zonal harmonics.
+    pub const ZONAL_COEFFICIENT: Self = Self::between(-0.1, 0.1);
+    /// Components of the wind, m/s.
+    pub const WIND: Self = Self::between(-1e4, 1e4);
+    /// The time at which a flight ends, s.
+    pub const STOP_TIME: Self = Self::above(0.0, 1e9);
+    /// Times since the start, s.
+    pub const TIME: Self = Self::between(0.0, 1e9);
+    /// Thrusts, N.
+    pub const FORCE: Self = Self::between(-1e12, 1e12);
+    /// Specific impulses, s; that of light is 3.1e7.
+    pub const SPECIFIC_IMPULSE: Self = Self::between(1e-3, 1e9);
+    /// Emissivities.
+    pub const EMISSIVITY: Self = Self::above(0.0, 1.0);
+    /// The relative tolerance of the integration.
+    pub const RELATIVE_TOLERANCE: Self = Self::between(1e-14, 1e-3);
+
+    const fn between(minimum: f64, maximum: f64) -> Self {
+        Self { minimum, exclusive: false, maximum }
+    }
+
+    const fn above(minimum: f64, maximum: f64) -> Self {
+        Self { minimum, exclusive: true, maximum }
+    }
+
+    /// Whether the value is one of them; no bound admits what is not finite.
+    pub fn admits(&self, value: f64) -> bool {
+        let above = if self.exclusive { value > self.minimum } else { value >= self.minimum };
+        above && value <= self.maximum
+    }
+
+    /// The same bound for numbers in another unit, `scale` times as large.
+    #[must_use]
+    pub fn scaled(self, scale: f64) -> Self {
+        Self { minimum: self.minimum * scale, maximum: self.maximum * scale, ..self }
+    }
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unbounded = |limit: f64| limit.abs() >= f64::MAX;
+        match (self.exclusive, unbounded(self.minimum), unbounded(self.maximum)) {
+            (_, true, true) => write!(f, "finite"),
+            (true, _, true) => write!(f, "greater than {}", self.minimum),
+            (true, _, false) => write!(f, "greater than {} and at most {}", self.minimum, Plain(self.maximum)),
+            (false, true, false) => write!(f, "at most {}", Plain(self.maximum)),
+            (false, false, true) => write!(f, "at least {}", self.minimum),
+            (false, false, false) => write!(f, "between {} and {}", Plain(self.minimum), Plain(self.maximum)),
+        }
+    }
+}
+
+/// Every number of a case that is not one of its values.
+pub(super) fn out_of_bounds(case: &Case) -> Vec<Fault> {
+    let Case { planet, atmosphere, density_factor, wind, vehicle, control, stop, solver, heating, .. } = case;
+    let (equatorial_radius, polar_radius) = planet.shape.semi_axes();
+    let mut checks: Vec<(&'static str, f64, Bound)> = vec![
+        ("planet.gravitational_parameter", planet.gravitational_parameter, Bound::GRAVITATIONAL_PARAMETER),
+        ("planet.equatorial_radius", equatorial_radius, Bound::PLANET_RADIUS),
+        ("planet.polar_radius", polar_radius, Bound::PLANET_RADIUS),
+        ("planet.rotation_rate", planet.rotation_rate, Bound::ROTATION_RATE),
+        ("density_factor", *density_factor, Bound::NON_NEGATIVE),
+        ("stop.altitude", stop.altitude, Bound::DISTANCE),
+        ("stop.time", stop.time, Bound::STOP_TIME),
+        ("solver.relative_tolerance", solver.relative_tolerance, Bound::RELATIVE_TOLERANCE),
+    ];
+    if let Gravity::Zonal(Zonal { coefficients: [j2, j3, j4] }) = planet.gravity {
+        checks.extend([
+            ("planet.gravity.j2", j2, Bound::ZONAL_COEFFICIENT),
+            ("planet.gravity.j3", j3, Bound::ZONAL_COEFFICIENT),
+            ("planet.gravity.j4", j4, Bound::ZONAL_COEFFICIENT),
+        ]);
+    }
+    if let Atmosphere::Exponential { surface_density, scale_height } = *atmosphere {
+        checks.extend([
+            ("atmosphere.surface_density", surface_density, Bound::NON_NEGATIVE),
+            ("atmosphere.scale_height", scale_height, Bound::POSITIVE),
+        ]);
+    }
+    if let Wind::Constant { east, north } = *wind {
+        checks.extend([("wind.east", east, Bound::WIND), ("wind.north", north, Bound::WIND)]);
+    }
+    checks.push(("vehicle.mass", vehicle.mass, Bound::POSITIVE));
+    if !matches!(vehicle.aerodynamics, Aerodynamics::Ballistic { .. }) {
+        checks.push(("vehicle.reference_area", vehicle.reference_area, Bound::NON_NEGATIVE));
+    }
+    checks.extend(vehicle.nose_radius.map(|radius| ("vehicle.nose_radius", radius, Bound::POSITIVE)));
+    checks.extend(heating.map(|heating| ("heating.emissivity", heating.emissivity, Bound::EMISSIVITY)));
+    checks.extend(stop.ceiling.map(|ceiling| ("stop.ceiling", ceiling, Bound::DISTANCE)));
+    let commands = [("control.bank_angle", &control.bank_angle), ("control.angle_of_attack", &control.angle_of_attack)];
+    checks.extend(commands.into_iter().filter_map(|(field, command)| match command {
+        Command::Constant(angle) => Some((field, *angle, Bound::TURN)),
+        Command::Schedule(_) => None,
+    }));
+    let fixed = checks.into_iter().map(|(field, value, bound)| (Cow::Borrowed(field), value, bound));
+    let fixed = fixed.chain(coefficients("vehicle", &vehicle.aerodynamics));
+    let conditions = case.conditions().map(|(place, Condition { quantity, value, .. })| {
+        (Cow::Owned(format!("{place}.value")), *value, quantity.bound())
+    });
+    let effects = case.events.iter().enumerate().flat_map(|(index, event)| numbers(index, &event.then));
+    let fault =
+        |(field, value, bound): Check| (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound });
+    fixed.chain(conditions).chain(effects).filter_map(fault).collect()
+}
+
+/// A number, with its place in the case and its bound.
+type Check = (Cow<'static, str>, f64, Bound);
+
+/// The coefficients that are numbers of their own.
+fn coefficients(place: &str, aerodynamics: &Aerodynamics) -> Vec<Check> {
+    let of = |name: &str, value: f64, bound: Bound| (Cow::Owned(format!("{place}.aerodynamics.{name}")), value, bound);
+    match *aerodynamics {
+        Aerodynamics::Constant { lift_coefficient, drag_coefficient } => vec![
+            of("lift_coefficient", lift_coefficient, Bound::FINITE),
+            of("drag_coefficient", drag_coefficient, Bound::NON_NEGATIVE),
+        ],
+        Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => vec![
+            of("ballistic_coefficient", ballistic_coefficient, Bound::POSITIVE),
+            of("lift_to_drag", lift_to_drag, Bound::FINITE),
+        ],
+        Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => Vec::new(),
+    }
+}
+
+/// The numbers of what an event changes.
+fn numbers(index: usize, effect: &Effect) -> Vec<Check> {
+    let of = |name: &str, value: f64, bound: Bound| (Cow::Owned(format!("events.{index}.then.{name}")), value, bound);
+    let mut checks = Vec::new();
+    checks.extend(effect.mass.map(|mass| of("mass", mass, Bound::POSITIVE)));
+    checks.extend(effect.reference_area.map(|area| of("reference_area", area, Bound::NON_NEGATIVE)));
+    checks.extend(effect.impulse.map(|impulse| of("impulse.speed_change", impulse.speed_change, Bound::VELOCITY)));
+    if let Some(Engine::On(thrust)) = effect.engine {
+        checks.push(of("engine.force", thrust.force, Bound::FORCE));
+        checks.push(of("engine.specific_impulse", thrust.specific_impulse, Bound::SPECIFIC_IMPULSE));
+        checks.extend(thrust.propellant.map(|mass| of("engine.propellant", mass, Bound::POSITIVE)));
+    }
+    let aerodynamics = effect.aerodynamics.iter();
+    checks.extend(aerodynamics.flat_map(|aerodynamics| coefficients(&format!("events.{index}.then"), aerodynamics)));
+    checks
+}
+
+impl Quantity {
+    /// The values that it may pass.
+    pub fn bound(self) -> Bound {
+        match self {
+            Self::Time => Bound::TIME,
+            Self::Altitude => Bound::DISTANCE,
+            Self::Speed => Bound::SPEED,
+            Self::Mach | Self::DynamicPressure | Self::LoadFactor => Bound::NON_NEGATIVE,
+            Self::FlightPathAngle => Bound::QUARTER_TURN,
+        }
+    }
+}

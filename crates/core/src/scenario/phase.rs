@@ -1,0 +1,85 @@
+//! A phase of a flight: what flies between two events.
+
+use super::Case;
+use crate::event::{Effect, Engine};
+use crate::motion::{Burn, Forces};
+use crate::propulsion::Thrust;
+use crate::vehicle::Vehicle;
+
+/// What flies from an instant on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// The instant, s.
+    pub since: f64,
+    /// The vehicle, with its mass then.
+    pub vehicle: Vehicle,
+    /// The thrust that is on, with the propellant that is left then.
+    pub thrust: Option<Thrust>,
+}
+
+impl Phase {
+    /// That in which a flight begins.
+    pub fn first(case: &Case) -> Self {
+        Self { since: 0.0, vehicle: case.vehicle.clone(), thrust: None }
+    }
+
+    /// The mass at a time of the phase, kg.
+    pub fn mass(&self, time: f64) -> f64 {
+        self.vehicle.mass - self.burnt(time)
+    }
+
+    /// The propellant burnt up to a time of the phase, kg.
+    fn burnt(&self, time: f64) -> f64 {
+        self.thrust.map_or(0.0, |thrust| thrust.mass_flow() * (time - self.since))
+    }
+
+    /// When the propellant is spent, s.
+    pub fn burnout(&self) -> Option<f64> {
+        let thrust = self.thrust?;
+        Some(self.since + thrust.propellant? / thrust.mass_flow())
+    }
+
+    /// When nothing at all would be left, s.
+    pub fn last_instant(&self) -> Option<f64> {
+        Some(self.since + self.vehicle.mass / self.thrust?.mass_flow())
+    }
+
+    /// The phase that begins with an effect at a time.
+    #[must_use]
+    pub fn after(&self, effect: &Effect, time: f64) -> Self {
+        let mass = effect.mass.unwrap_or_else(|| self.mass(time));
+        let Vehicle { reference_area, aerodynamics, .. } = self.vehicle.with_mass(mass);
+        let vehicle = Vehicle {
+            reference_area: effect.reference_area.unwrap_or(reference_area),
+            aerodynamics: effect.aerodynamics.clone().unwrap_or(aerodynamics),
+            mass,
+            ..self.vehicle
+        };
+        let left =
+            |thrust: Thrust| Thrust { propellant: thrust.propellant.map(|whole| whole - self.burnt(time)), ..thrust };
+        let thrust = match effect.engine {
+            None => self.thrust.map(left),
+            Some(Engine::On(thrust)) => Some(thrust).filter(|thrust| thrust.force != 0.0),
+            Some(Engine::Off) => None,
+        };
+        Self { since: time, vehicle, thrust }
+    }
+
+    /// The phase that begins where the propellant is spent.
+    #[must_use]
+    pub fn burnt_out(&self, time: f64) -> Self {
+        let spent = self.thrust.and_then(|thrust| thrust.propellant).unwrap_or(0.0);
+        Self { since: time, vehicle: self.vehicle.with_mass(self.vehicle.mass - spent), thrust: None }
+    }
+
+    /// What acts on the vehicle.
+    pub fn forces(&self, case: &Case) -> Forces {
+        let burn = self.thrust.map(|thrust| Burn {
+            along: thrust.along,
+            since: self.since,
+            acceleration: thrust.force / self.vehicle.mass,
+            flow: thrust.mass_flow() / self.vehicle.mass,
+        });
+        Forces::new(case.models_of(&self.vehicle), case.parameters_of(&self.vehicle)).burning(burn)
+    }
+}

@@ -1,0 +1,112 @@
+//! A step of a flight, kept, and the motion inside it.
+
+use crate::coordinates::PlanetFixed;
+use crate::integrate::{Interpolant, Step};
+use crate::motion::{Cartesian, Forces, Formulation, Regime, Spherical, heat_load};
+
+/// A step of a flight, and the phase and the regime of its models during it.
+#[derive(Clone, Debug)]
+pub(crate) struct Leg {
+    pub(crate) step: LegStep,
+    pub(crate) phase: usize,
+    pub(crate) regime: Regime,
+}
+
+/// A step, with or without the heat load.
+#[derive(Clone, Debug)]
+pub(crate) enum LegStep {
+    Plain(Step<6>),
+    Heated(Step<7>),
+}
+
+/// The equations of either formulation.
+pub(crate) enum Motion {
+    Cartesian(Cartesian),
+    Spherical(Spherical),
+}
+
+/// The motion inside a leg.
+pub(crate) enum LegInterpolant {
+    Plain(Interpolant<6>),
+    Heated(Interpolant<7>),
+}
+
+impl Leg {
+    /// s.
+    pub(crate) fn start_time(&self) -> f64 {
+        match &self.step {
+            LegStep::Plain(step) => step.start_time,
+            LegStep::Heated(step) => step.start_time,
+        }
+    }
+
+    /// s.
+    pub(crate) fn end_time(&self) -> f64 {
+        match &self.step {
+            LegStep::Plain(step) => step.end_time,
+            LegStep::Heated(step) => step.end_time,
+        }
+    }
+
+    /// The instant at a part of the leg, s.
+    pub(crate) fn time(&self, part: f64) -> f64 {
+        match &self.step {
+            LegStep::Plain(step) => step.time(part),
+            LegStep::Heated(step) => step.time(part),
+        }
+    }
+}
+
+impl LegInterpolant {
+    /// The state and the heat load, J/m², at an instant.
+    pub(crate) fn at(&self, motion: &Motion, time: f64) -> (PlanetFixed<f64>, Option<f64>) {
+        match self {
+            Self::Plain(interpolant) => motion.state(&interpolant.state_at(time)),
+            Self::Heated(interpolant) => motion.state(&interpolant.state_at(time)),
+        }
+    }
+}
+
+impl Motion {
+    pub(crate) fn forces(&self) -> &Forces {
+        match self {
+            Self::Cartesian(Cartesian(forces)) | Self::Spherical(Spherical(forces)) => forces,
+        }
+    }
+
+    pub(crate) fn forces_mut(&mut self) -> &mut Forces {
+        match self {
+            Self::Cartesian(Cartesian(forces)) | Self::Spherical(Spherical(forces)) => forces,
+        }
+    }
+
+    pub(crate) fn interpolant(&self, step: &LegStep) -> LegInterpolant {
+        match (self, step) {
+            (Self::Cartesian(motion), LegStep::Plain(step)) => LegInterpolant::Plain(step.interpolant(motion)),
+            (Self::Cartesian(motion), LegStep::Heated(step)) => LegInterpolant::Heated(step.interpolant(motion)),
+            (Self::Spherical(motion), LegStep::Plain(step)) => LegInterpolant::Plain(step.interpolant(motion)),
+            (Self::Spherical(motion), LegStep::Heated(step)) => LegInterpolant::Heated(step.interpolant(motion)),
+        }
+    }
+
+    /// The state at the end of a step.
+    pub(crate) fn end(&self, step: &LegStep) -> PlanetFixed<f64> {
+        match step {
+            LegStep::Plain(step) => self.state(&step.end).0,
+            LegStep::Heated(step) => self.state(&step.end).0,
+        }
+    }
+
+    /// The state and the heat load, J/m², of numbers of the formulation.
+    fn state<const N: usize>(&self, coordinates: &[f64; N]) -> (PlanetFixed<f64>, Option<f64>)
+    where
+        Cartesian: Formulation<N>,
+        Spherical: Formulation<N>,
+    {
+        let state = match self {
+            Self::Cartesian(_) => Cartesian::planet_fixed(coordinates),
+            Self::Spherical(_) => Spherical::planet_fixed(coordinates),
+        };
+        (state, heat_load(coordinates))
+    }
+}

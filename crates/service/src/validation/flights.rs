@@ -1,0 +1,60 @@
+//! Entries that were flown, beside what was published of them: not all is known that they depend on, and nothing is tuned.
+
+use serde_json::{Map, Value, json};
+
+use super::cases::{self, number, text, tree};
+use super::{Check, Expected, Group, Origin, Program};
+use crate::error::ApiError;
+
+pub(super) fn checks(program: Program) -> Result<Vec<Check>, ApiError> {
+    let file = tree(cases::FLIGHTS);
+    let mut checks = Vec::new();
+    for flight in elements(&file["flights"]) {
+        let [case, source, note] = ["name", "source", "note"].map(|name| text(&flight[name]));
+        let origin = Origin { group: Group::Flights, case, source, note };
+        for published in elements(&flight["published"]) {
+            let answer = program.simulate(request(&file, flight, &published["when"]))?;
+            let uncertainty = published["uncertainty"].as_f64();
+            let expected = Expected { value: number(published, "/value"), allowed: uncertainty, rounding: 0.0 };
+            let got = number(&answer, published["at"].as_str().unwrap_or_default());
+            checks.push(origin.beside(text(&published["quantity"]), &text(&published["unit"]), expected, got));
+        }
+    }
+    Ok(checks)
+}
+
+fn elements(list: &Value) -> &[Value] {
+    list.as_array().map_or(&[], Vec::as_slice)
+}
+
+/// The request of a flight: what all have, what the flight has that it is like, and what it has itself. It ends where a condition is met,
+/// unless that is null.
+fn request(file: &Value, flight: &Value, when: &Value) -> Value {
+    let like = elements(&file["flights"]).iter().find(|other| other["name"] == flight["like"]);
+    let mut request = file["defaults"].clone();
+    for part in like.into_iter().chain([flight]) {
+        merge(&mut request, &part["request"]);
+    }
+    if !when.is_null() {
+        request["stop"]["when"] = json!([when]);
+    }
+    request
+}
+
+/// A merge patch (RFC 7396): null takes a field away.
+fn merge(target: &mut Value, patch: &Value) {
+    let Value::Object(patch) = patch else {
+        *target = patch.clone();
+        return;
+    };
+    if !target.is_object() {
+        *target = Value::Object(Map::new());
+    }
+    for (name, value) in patch {
+        if value.is_null() {
+            target.as_object_mut().map(|target| target.remove(name));
+        } else {
+            merge(&mut target[name], value);
+        }
+    }
+}

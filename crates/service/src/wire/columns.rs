@@ -1,0 +1,398 @@
+//! The quantities of a flight: its states and its trajectory, as JSON and as CSV.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::io::Write;
+
+use reentry::coordinates::FlightPath;
+use reentry::trajectory::FlightPoint;
+use serde::{Serialize, Serializer};
+use utoipa::openapi::schema::{ArrayBuilder, KnownFormat, ObjectBuilder, SchemaFormat, SchemaType, Type};
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
+
+use super::AngleUnit;
+use super::epoch::{Instant, Utc};
+
+/// One quantity of the flight: a key of the states, a column of the trajectory.
+#[derive(Debug)]
+pub struct Column {
+    /// Its name in JSON and CSV.
+    pub name: &'static str,
+    /// Its meaning and unit.
+    pub description: &'static str,
+    needs: Needs,
+    quantity: Quantity,
+}
+
+/// What a case must have for a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Needs {
+    Nothing,
+    Temperature,
+    Pressure,
+    Epoch,
+    Heating,
+    ChangingMass,
+}
+
+/// How a column is made from a point of the flight.
+#[derive(Debug)]
+enum Quantity {
+    Number(fn(&FlightPoint) -> f64),
+    Angle(fn(&FlightPoint) -> f64),
+    /// In [0, 2π).
+    Turn(fn(&FlightPoint) -> f64),
+    /// Null where there is none.
+    Maybe(fn(&FlightPoint) -> Option<f64>),
+    /// The time in UTC.
+    Utc,
+}
+
+/// What there is to know at every instant of a flight beside its motion.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is asked for by its name")]
+pub struct Known {
+    /// Whether the atmosphere has a temperature.
+    pub temperature: bool,
+    /// Whether the atmosphere has a pressure.
+    pub pressure: bool,
+    /// The instant t = 0.
+    pub epoch: Option<Instant>,
+    /// Whether there is a heat flux.
+    pub heating: bool,
+    /// Whether the mass may change.
+    pub changing_mass: bool,
+}
+
+const fn column(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
+    Column { name, description, needs: Needs::Nothing, quantity: Quantity::Number(value) }
+}
+
+const fn angle(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
+    Column { name, description, needs: Needs::Nothing, quantity: Quantity::Angle(value) }
+}
+
+const fn maybe(
+    name: &'static str,
+    description: &'static str,
+    needs: Needs,
+    value: fn(&FlightPoint) -> Option<f64>,
+) -> Column {
+    Column { name, description, needs, quantity: Quantity::Maybe(value) }
+}
+
+/// Every quantity, in the order of the answer.
+pub static COLUMNS: [Column; 33] = [
+    column("time", "Since the start, s.", |point| point.time),
+    column("altitude", "Height above the planet's shape along the radius vector, m.", |point| point.loads.altitude),
+    column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
+    angle("longitude", "East positive, in (-π, π].", |point| point.flight_path.longitude),
+    angle("geocentric_latitude", "Angle of the radius vector above the equatorial plane.", |point| {
+        point.flight_path.geocentric_latitude
+    }),
+    angle("geodetic_latitude", "Angle of the normal of the planet's shape above the equatorial plane.", |point| {
+        point.geodetic_latitude
+    }),
+    column("geodetic_altitude", "Height above the planet's shape along its normal, m.", |point| {
+        point.geodetic_altitude
+    }),
+    column("speed", "Relative to the rotating planet, m/s.", |point| point.flight_path.speed),
+    angle("flight_path_angle", "Of the relative velocity above the plane normal to the radius.", |point| {
+        point.flight_path.flight_path_angle
+    }),
+    angle("heading", "From east (0) towards north (π/2), in (-π, π].", |point| point.flight_path.heading),
+    column("density", "Of the air, kg/m³.", |point| point.loads.density),
+    column("dynamic_pressure", "½ρV² of the speed relative to the air, Pa.", |point| point.loads.dynamic_pressure),
+    column(
+        "deceleration",
+        "-dV/dt of the relative speed, m/s²; at rest minus the magnitude of the acceleration.",
+        |point| point.loads.deceleration,
+    ),
+    column("load_factor", "Lift, drag and thrust over mass and 9.80665 m/s².", |point| point.loads.load_factor),
+    Column {
+        name: "azimuth",
+        description: "The compass direction of the heading: from north (0) towards east (π/2), in [0, 2π).",
+        needs: Needs::Nothing,
+        quantity: Quantity::Turn(azimuth),
+    },
+    column("air_speed", "Relative to the air, m/s.", |point| point.loads.air_speed),
+    maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Needs::Temperature, |point| {
+        point.temperature
+    }),
+    maybe("pressure", "Of the air, Pa; where the atmosphere has a pressure.", Needs::Pressure, |point| point.pressure),
+    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has a temperature.", Needs::Temperature, |point| {
+        point.speed_of_sound
+    }),
+    maybe(
+        "mach",
+        "The speed relative to the air over that of sound; where the atmosphere has a temperature.",
+        Needs::Temperature,
+        |point| point.loads.mach,
+    ),
+    angle("bank_angle", "As commanded.", |point| point.bank_angle),
+    angle("angle_of_attack", "As commanded.", |point| point.angle_of_attack),
+    maybe(
+        "downrange",
+        "From the initial ground point along the great circle of its heading, m, on the sphere of the equatorial radius; \
+         null where the flight starts vertically or at rest.",
+        Needs::Nothing,
+        |point| point.downrange,
+    ),
+    maybe(
+        "crossrange",
+        "To the right of that great circle, m; null where the flight starts vertically or at rest.",
+        Needs::Nothing,
+        |point| point.crossrange,
+    ),
+    column("inertial_speed", "Relative to inertial space, m/s.", |point| point.inertial_speed),
+    angle("inertial_flight_path_angle", "Of the inertial velocity above the plane normal to the radius.", |point| {
+        point.inertial_flight_path_angle
+    }),
+    column(
+        "specific_energy",
+        "Half the squared inertial speed and the potential of the planet's gravity, J/kg.",
+        |point| point.specific_energy,
+    ),
+    Column {
+        name: "utc",
+        description: "The instant in UTC, RFC 3339 to the microsecond; with an epoch. A leap second during the flight is not \
+                      counted; null after the year 9999.",
+        needs: Needs::Epoch,
+        quantity: Quantity::Utc,
+    },
+    maybe(
+        "convective_heat_flux",
+        "Into the stagnation point by convection, W/m²; with heating.",
+        Needs::Heating,
+        |point| point.loads.heat_flux.map(|flux| flux.convective),
+    ),
+    maybe(
+        "radiative_heat_flux",
+        "Into the stagnation point by radiation, W/m²; with heating.",
+        Needs::Heating,
+        |point| point.loads.heat_flux.map(|flux| flux.radiative),
+    ),
+    maybe(
+        "heat_load",
+        "The integral of both heat fluxes since the start, J/m²; with heating.",
+        Needs::Heating,
+        |point| point.heat_load,
+    ),
+    maybe(
+        "wall_temperature",
+        "At which the wall radiates as much as it gets, K; with heating.",
+        Needs::Heating,
+        |point| point.wall_temperature,
+    ),
+    Column {
+        name: "mass",
+        description: "kg; where an event may change it.",
+        needs: Needs::ChangingMass,
+        quantity: Quantity::Number(|point| point.mass),
+    },
+];
+
+/// The compass direction of the heading, in [0, 2π); 0 where there is none, at rest and in vertical flight.
+fn azimuth(point: &FlightPoint) -> f64 {
+    let FlightPath { speed, flight_path_angle, .. } = point.flight_path;
+    if speed <= 0.0 || flight_path_angle.abs() >= FRAC_PI_2 {
+        return 0.0;
+    }
+    let azimuth = FRAC_PI_2 - point.flight_path.heading;
+    // The heading is at most π, and just less than 0 may round to the full turn.
+    let turn = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
+    if turn < TAU { turn } else { 0.0 }
+}
+
+/// A value of a column.
+enum Cell {
+    Number(f64),
+    Instant(Utc),
+    Nothing,
+}
+
+impl Serialize for Cell {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => number.serialize(serializer),
+            Self::Instant(instant) => instant.serialize(serializer),
+            Self::Nothing => serializer.serialize_none(),
+        }
+    }
+}
+
+impl Column {
+    /// What the case lacks for the column, if anything.
+    pub fn missing(&self, known: Known) -> Option<&'static str> {
+        match self.needs {
+            Needs::Temperature if !known.temperature => {
+                Some("an atmosphere that has a temperature: us76, or a table with one")
+            }
+            Needs::Pressure if !known.pressure => Some("an atmosphere that has a pressure: us76, or a table with one"),
+            Needs::Epoch if known.epoch.is_none() => Some("an epoch"),
+            Needs::Heating if !known.heating => Some("heating"),
+            Needs::ChangingMass if !known.changing_mass => Some("an event that changes it"),
+            _ => None,
+        }
+    }
+
+    /// Every column that the case has.
+    fn all(known: Known) -> impl Iterator<Item = &'static Self> {
+        COLUMNS.iter().filter(move |column| column.missing(known).is_none())
+    }
+
+    fn of(&self, point: &FlightPoint, unit: AngleUnit, epoch: Option<Instant>) -> Cell {
+        match self.quantity {
+            Quantity::Number(value) => Cell::Number(value(point)),
+            Quantity::Angle(value) => Cell::Number(unit.from_radians(value(point))),
+            Quantity::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
+            Quantity::Maybe(value) => value(point).map_or(Cell::Nothing, Cell::Number),
+            Quantity::Utc => epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant),
+        }
+    }
+
+    /// The schema of a value.
+    fn schema(&self) -> ObjectBuilder {
+        let types = |kind| SchemaType::from_iter([kind, Type::Null]);
+        match (&self.quantity, self.needs) {
+            (Quantity::Utc, _) => ObjectBuilder::new()
+                .schema_type(types(Type::String))
+                .format(Some(SchemaFormat::KnownFormat(KnownFormat::DateTime))),
+            (Quantity::Maybe(_), Needs::Nothing) => ObjectBuilder::new().schema_type(types(Type::Number)),
+            _ => ObjectBuilder::new().schema_type(Type::Number),
+        }
+    }
+}
+
+/// The state and the loads at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    point: FlightPoint,
+    unit: AngleUnit,
+    known: Known,
+}
+
+impl Row {
+    /// A point of a flight of which so much is known.
+    pub fn new(point: FlightPoint, unit: AngleUnit, known: Known) -> Self {
+        Self { point, unit, known }
+    }
+}
+
+impl Serialize for Row {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(Column::all(self.known).map(|column| {
+            let cell = column.of(&self.point, self.unit, self.known.epoch);
+            (column.name, cell)
+        }))
+    }
+}
+
+impl PartialSchema for Row {
+    fn schema() -> RefOr<Schema> {
+        let object = ObjectBuilder::new().description(Some("The state and the loads at an instant."));
+        let with = |object: ObjectBuilder, column: &Column| {
+            let object = object.property(column.name, column.schema().description(Some(column.description)));
+            if column.needs == Needs::Nothing { object.required(column.name) } else { object }
+        };
+        COLUMNS.iter().fold(object, with).into()
+    }
+}
+
+impl ToSchema for Row {}
+
+/// The trajectory: one array a quantity, all of one length, time strictly increasing.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    points: Vec<FlightPoint>,
+    chosen: Vec<&'static Column>,
+    unit: AngleUnit,
+    epoch: Option<Instant>,
+}
+
+impl Serialize for Columns {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.chosen.iter().map(|column| (column.name, Values { column, columns: self })))
+    }
+}
+
+impl PartialSchema for Columns {
+    fn schema() -> RefOr<Schema> {
+        let description = "The trajectory: one array a quantity, all of one length, time strictly increasing. \
+                           With `output.columns` those alone.";
+        let object = ObjectBuilder::new().description(Some(description));
+        let with = |object: ObjectBuilder, column: &Column| {
+            let array = ArrayBuilder::new().items(column.schema()).description(Some(column.description));
+            object.property(column.name, array)
+        };
+        COLUMNS.iter().fold(object, with).into()
+    }
+}
+
+impl ToSchema for Columns {}
+
+struct Values<'a> {
+    column: &'a Column,
+    columns: &'a Columns,
+}
+
+impl Serialize for Values<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Columns { points, unit, epoch, .. } = self.columns;
+        // The kind of the quantity is looked at once, not at every value.
+        match self.column.quantity {
+            Quantity::Number(value) => serializer.collect_seq(points.iter().map(value)),
+            Quantity::Angle(value) => {
+                serializer.collect_seq(points.iter().map(|point| unit.from_radians(value(point))))
+            }
+            Quantity::Turn(value) => {
+                serializer.collect_seq(points.iter().map(|point| unit.turn_from_radians(value(point))))
+            }
+            Quantity::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
+            Quantity::Utc => serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, *epoch))),
+        }
+    }
+}
+
+impl Columns {
+    /// The chosen columns at the points of a flight of which so much is known; without a choice all that there are.
+    pub fn new(points: Vec<FlightPoint>, chosen: Option<Vec<&'static Column>>, unit: AngleUnit, known: Known) -> Self {
+        let chosen = chosen.unwrap_or_else(|| Column::all(known).collect());
+        Self { points, chosen, unit, epoch: known.epoch }
+    }
+
+    /// The instants.
+    pub fn points(&self) -> &[FlightPoint] {
+        &self.points
+    }
+
+    /// The instant t = 0.
+    pub fn epoch(&self) -> Option<Instant> {
+        self.epoch
+    }
+
+    /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
+    ///
+    /// # Errors
+    /// Never: memory can always be written.
+    pub fn to_csv(&self) -> Result<Vec<u8>, serde_json::Error> {
+        let mut csv = Vec::with_capacity(20 * self.chosen.len() * (self.points.len() + 1));
+        let names: Vec<_> = self.chosen.iter().map(|column| column.name).collect();
+        csv.extend_from_slice(names.join(",").as_bytes());
+        csv.push(b'\n');
+        for point in &self.points {
+            for (index, column) in self.chosen.iter().enumerate() {
+                if index > 0 {
+                    csv.push(b',');
+                }
+                match column.of(point, self.unit, self.epoch) {
+                    Cell::Number(number) => serde_json::to_writer(&mut csv, &number)?,
+                    Cell::Instant(instant) => write!(csv, "{instant}").map_err(serde_json::Error::io)?,
+                    Cell::Nothing => {}
+                }
+            }
+            csv.push(b'\n');
+        }
+        Ok(csv)
+    }
+}
