@@ -168,6 +168,38 @@ async fn the_end_and_the_peaks_are_marked() {
 }
 
 #[tokio::test]
+async fn events_and_the_peaks_of_heating_are_marked() {
+    let case: Value = serde_json::from_str(include_str!("../../openapi/examples/deorbit.json")).unwrap();
+    let case = without(&with(&case, "/events/1/name", json!("separation_of <A> & B")), "/events/3/name");
+    let answer = fly(&case).await;
+    let (map, xml, packets) = (geojson(&case).await, drawn(&case, "kml").await, czml(&case).await);
+    let of_kind = |kind: &str| -> Vec<(usize, &Value)> {
+        let features = map["features"].as_array().unwrap().iter().enumerate();
+        features.filter(|(_, feature)| feature["properties"]["kind"] == kind).collect()
+    };
+    let events = answer["events"].as_array().unwrap();
+    let marks = of_kind("event");
+    assert_eq!((events.len(), marks.len()), (6, 6));
+    for (event, (index, mark)) in events.iter().zip(marks) {
+        let (state, properties) = (&event["state"], &mark["properties"]);
+        let name = event.get("name").cloned().unwrap_or_else(|| json!("event 3"));
+        assert_eq!((&properties["name"], &properties["time"]), (&name, &event["time"]));
+        assert_eq!((&properties["quantity"], &properties["value"]), (&json!("speed"), &state["speed"]));
+        assert_eq!(properties["altitude"], state["altitude"]);
+        let place = json!([state["longitude"], state["geodetic_latitude"], state["geodetic_altitude"]]);
+        assert_eq!(mark["geometry"]["coordinates"], place);
+        assert_eq!((&packets[index + 1]["name"], &packets[index + 1]["properties"]), (&name, properties));
+        let name = name.as_str().unwrap().replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        assert_eq!(elements(elements(&xml, "Placemark")[index], "name"), [name]);
+    }
+    // All but the radiative flux, of which there is none at this speed.
+    let peaks: Vec<_> = of_kind("peak").iter().map(|(_, mark)| mark["properties"]["quantity"].clone()).collect();
+    let expected: Vec<_> =
+        answer["peaks"].as_object().unwrap().keys().filter(|name| *name != "radiative_heat_flux").collect();
+    assert_eq!(json!(peaks), json!(expected));
+}
+
+#[tokio::test]
 async fn the_track_says_how_the_flight_ended_and_what_it_warns_of() {
     let table = json!({"type": "table", "altitude": [0, 1000], "east": [5, 6], "north": [0, 0]});
     let case =

@@ -16,7 +16,8 @@ from czml3 import Document
 from fastkml.validator import validate
 from geojson_pydantic import FeatureCollection
 
-CAPSULE = json.loads((Path(__file__).parents[2] / "openapi/examples/lifting_capsule.json").read_text())
+EXAMPLES = Path(__file__).parents[2] / "openapi/examples"
+CAPSULE = json.loads((EXAMPLES / "lifting_capsule.json").read_text())
 KML_SCHEMA = Path(fastkml.__file__).parent / "schema/kml22gx.xsd"
 FORMATS = ["geojson", "kml", "czml"]
 
@@ -37,6 +38,7 @@ ON_GROUND = case(initial_state={**case()["initial_state"], "altitude": 0, "speed
 EPOCH = "2026-11-22T12:00:00Z"
 CASES = {
     "a capsule": {**CAPSULE, "output": {"interval": 5}, "name": "a <b>&\"'\x01</b> ]]> ü"},
+    "events and heat": json.loads((EXAMPLES / "deorbit.json").read_text()),
     "the antimeridian": case(),
     "the antimeridian, dated": case(epoch=EPOCH),
     "elsewhere": case(longitude=-60),
