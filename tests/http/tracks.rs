@@ -95,8 +95,8 @@ async fn the_places_are_those_of_the_rows() {
         let track = &map["features"][0];
         assert_eq!(track["geometry"]["type"], "LineString");
         assert_eq!(positions(&track["geometry"]["coordinates"]), rows);
-        assert_eq!(track["properties"]["time"], answer["trajectory"]["time"]);
-        assert_eq!(track["properties"].get("utc"), answer["trajectory"].get("utc"));
+        assert_eq!(track["properties"]["times"], answer["trajectory"]["time"]);
+        assert_eq!(track["properties"].get("times_utc"), answer["trajectory"].get("utc"));
 
         let xml = drawn(&case, "kml").await;
         let (points, separator) = match case.get("epoch") {
@@ -161,6 +161,42 @@ async fn the_end_and_the_peaks_are_marked() {
         assert!(placemarks[index].contains(&format!("<Data name=\"value\"><value>{}<", mark["properties"]["value"])));
         assert_eq!(elements(placemarks[index], "description")[0], packet["description"]);
     }
+    let description = |index: usize| packets[index]["description"].as_str().unwrap();
+    assert_eq!(description(4), "load factor 8.9873 g, 234.0 s after the start, at an altitude of 38465 m");
+    // A Mach number has no unit.
+    assert!(description(7).starts_with("mach ") && !description(7).contains(" ,"), "{}", description(7));
+}
+
+#[tokio::test]
+async fn events_and_the_peaks_of_heating_are_marked() {
+    let case: Value = serde_json::from_str(include_str!("../../openapi/examples/deorbit.json")).unwrap();
+    let case = without(&with(&case, "/events/1/name", json!("separation_of <A> & B")), "/events/3/name");
+    let answer = fly(&case).await;
+    let (map, xml, packets) = (geojson(&case).await, drawn(&case, "kml").await, czml(&case).await);
+    let of_kind = |kind: &str| -> Vec<(usize, &Value)> {
+        let features = map["features"].as_array().unwrap().iter().enumerate();
+        features.filter(|(_, feature)| feature["properties"]["kind"] == kind).collect()
+    };
+    let events = answer["events"].as_array().unwrap();
+    let marks = of_kind("event");
+    assert_eq!((events.len(), marks.len()), (6, 6));
+    for (event, (index, mark)) in events.iter().zip(marks) {
+        let (state, properties) = (&event["state"], &mark["properties"]);
+        let name = event.get("name").cloned().unwrap_or_else(|| json!("event 3"));
+        assert_eq!((&properties["name"], &properties["time"]), (&name, &event["time"]));
+        assert_eq!((&properties["quantity"], &properties["value"]), (&json!("speed"), &state["speed"]));
+        assert_eq!(properties["altitude"], state["altitude"]);
+        let place = json!([state["longitude"], state["geodetic_latitude"], state["geodetic_altitude"]]);
+        assert_eq!(mark["geometry"]["coordinates"], place);
+        assert_eq!((&packets[index + 1]["name"], &packets[index + 1]["properties"]), (&name, properties));
+        let name = name.as_str().unwrap().replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        assert_eq!(elements(elements(&xml, "Placemark")[index], "name"), [name]);
+    }
+    // All but the radiative flux, of which there is none at this speed.
+    let peaks: Vec<_> = of_kind("peak").iter().map(|(_, mark)| mark["properties"]["quantity"].clone()).collect();
+    let expected: Vec<_> =
+        answer["peaks"].as_object().unwrap().keys().filter(|name| *name != "radiative_heat_flux").collect();
+    assert_eq!(json!(peaks), json!(expected));
 }
 
 #[tokio::test]
@@ -216,10 +252,10 @@ async fn a_line_over_the_antimeridian_is_cut_there() {
         check::near("altitude", leaving[2], from[2] + part * (to[2] - from[2]), 1e-8);
         // The times have the shape of the coordinates.
         for (part, coordinates) in parts.iter().enumerate() {
-            let times = numbers(&track["properties"]["time"][part]);
+            let times = numbers(&track["properties"]["times"][part]);
             assert_eq!(times.len(), coordinates.len());
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
-            assert_eq!(track["properties"]["utc"][part].as_array().unwrap().len(), times.len());
+            assert_eq!(track["properties"]["times_utc"][part].as_array().unwrap().len(), times.len());
         }
     }
 }
@@ -301,14 +337,9 @@ async fn an_epoch_dates_every_vertex() {
     let utc = fly(&dated).await["trajectory"]["utc"].clone();
 
     let map = geojson(&dated).await;
-    assert_eq!(map["features"][0]["properties"]["utc"], utc);
-    assert!(
-        map["features"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .all(|feature| feature["properties"]["utc"].is_array() || feature["properties"]["utc"].is_string())
-    );
+    assert_eq!(map["features"][0]["properties"]["times_utc"], utc);
+    let marks = &map["features"].as_array().unwrap()[1..];
+    assert!(marks.iter().all(|mark| mark["properties"]["utc"].is_string()));
     assert!(!geojson(&plain).await.to_string().contains("utc"));
 
     let xml = drawn(&dated, "kml").await;
@@ -366,7 +397,7 @@ async fn a_flight_that_ends_at_its_start_is_a_point() {
         }
         let map = geojson(&case).await;
         assert_eq!(map["features"][0]["geometry"], json!({"type": "MultiLineString", "coordinates": []}));
-        assert_eq!(map["features"][0]["properties"]["time"], json!([]));
+        assert_eq!(map["features"][0]["properties"]["times"], json!([]));
         assert_eq!(map["features"].as_array().unwrap().len(), 6);
         assert_eq!(numbers(&czml(&case).await[1]["position"]["cartographicDegrees"]).len(), 4);
         assert_eq!(elements(&drawn(&case, "kml").await, "Placemark").len(), 6);

@@ -22,9 +22,9 @@ use crate::wire::trajectory::SimulateResponse;
 /// is reached, and answers with the initial and final state, the peaks and the trajectory.
 /// `text/csv` has the trajectory alone: a header of the names, and a line an instant.
 ///
-/// The rest are maps, in degrees whatever the unit of the case: the track with a vertex a row and its time, the end and the peaks as
-/// points with their value, unit, time and altitude. Altitudes are above the planet's ellipsoid. `application/geo+json` is a feature
-/// collection: the track, cut at the antimeridian, with `time` and, with an epoch, `utc` in the shape of its coordinates, and with
+/// The rest are maps, in degrees whatever the unit of the case: the track with a vertex a row and its time, the end, the peaks and the
+/// events as points with their value, unit, time and altitude. Altitudes are above the planet's ellipsoid. `application/geo+json` is a feature
+/// collection: the track, cut at the antimeridian, with `times` and, with an epoch, `times_utc` in the shape of its coordinates, and with
 /// the warnings of the flight. `application/vnd.google-earth.kml+xml` is a `gx:Track` with an epoch, and a line without instants
 /// without one. `application/czml+json` is a list of packets, which starts at 2000-01-01T12:00:00Z without an epoch. The places are
 /// those of the case's planet, which a map takes for the Earth's.

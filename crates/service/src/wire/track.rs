@@ -153,9 +153,10 @@ impl Vertex {
 impl NamedPoint {
     /// What there is to know of it, for people.
     fn description(&self) -> String {
-        let Self { quantity, unit, .. } = self;
-        let [value, time, altitude] = [self.value, self.time, self.altitude].map(rounded);
-        format!("{} {value} {unit}, {time} s after the start, at an altitude of {altitude} m", words(quantity))
+        let reading = format!("{} {} {}", words(self.quantity), five_digits(self.value), self.unit);
+        // Without the sign of a zero.
+        let altitude = self.altitude.round() + 0.0;
+        format!("{}, {:.1} s after the start, at an altitude of {altitude} m", reading.trim_end(), self.time)
     }
 }
 
@@ -164,7 +165,7 @@ fn words(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// A number for people: five digits of it.
-fn rounded(value: f64) -> f64 {
+/// A number for people.
+fn five_digits(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }

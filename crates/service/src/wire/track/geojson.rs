@@ -25,10 +25,10 @@ impl Track<'_> {
             "termination": self.answer.termination,
             "models": self.answer.models,
             "warnings": self.answer.warnings,
-            "time": in_shape(&parts, |vertex| json!(vertex.time)),
+            "times": in_shape(&parts, |vertex| json!(vertex.time)),
         });
         if self.epoch.is_some() {
-            properties["utc"] = in_shape(&parts, |vertex| json!(self.utc(vertex.time)));
+            properties["times_utc"] = in_shape(&parts, |vertex| json!(self.utc(vertex.time)));
         }
         let lines = parts.iter().map(|part| part.iter().map(Vertex::position));
         let geometry = match &parts[..] {
@@ -140,6 +140,68 @@ impl Vertex {
             longitude: between(self.longitude, other.longitude),
             latitude: between(self.latitude, other.latitude),
             altitude: between(self.altitude, other.altitude),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Vertex, by_way_of_poles, cut};
+
+    /// Vertices at these longitudes and latitudes, a second apart.
+    fn vertices(places: &[(f64, f64)]) -> Vec<Vertex> {
+        let vertex = |(time, &(longitude, latitude))| Vertex { time, longitude, latitude, altitude: 100.0 };
+        (0..).map(f64::from).zip(places).map(vertex).collect()
+    }
+
+    fn places(vertices: &[Vertex]) -> Vec<(f64, f64)> {
+        vertices.iter().map(|vertex| (vertex.longitude, vertex.latitude)).collect()
+    }
+
+    #[test]
+    fn lines_are_cut_where_they_cross_the_antimeridian() {
+        for (track, expected) in [
+            (
+                vec![(170.0, 0.0), (-170.0, 10.0)],
+                vec![vec![(170.0, 0.0), (180.0, 5.0)], vec![(-180.0, 5.0), (-170.0, 10.0)]],
+            ),
+            (
+                vec![(-170.0, 0.0), (160.0, 9.0)],
+                vec![vec![(-170.0, 0.0), (-180.0, 3.0)], vec![(180.0, 3.0), (160.0, 9.0)]],
+            ),
+            // On it, the side is that of the neighbour.
+            (
+                vec![(170.0, 1.0), (180.0, 2.0), (-170.0, 3.0)],
+                vec![vec![(170.0, 1.0), (180.0, 2.0)], vec![(-180.0, 2.0), (-170.0, 3.0)]],
+            ),
+            (vec![(-179.0, 1.0), (180.0, 2.0), (-179.0, 3.0)], vec![vec![(-179.0, 1.0), (-180.0, 2.0), (-179.0, 3.0)]]),
+            (vec![(-179.0, 1.0), (180.0, 2.0), (180.0, 3.0)], vec![vec![(-179.0, 1.0), (-180.0, 2.0), (-180.0, 3.0)]]),
+            (vec![(180.0, 1.0), (-179.0, 2.0)], vec![vec![(-180.0, 1.0), (-179.0, 2.0)]]),
+            (vec![(180.0, 1.0), (179.0, 2.0)], vec![vec![(180.0, 1.0), (179.0, 2.0)]]),
+            // The other edge of the map is not it.
+            (vec![(-80.0, 1.0), (80.0, 2.0)], vec![vec![(-80.0, 1.0), (80.0, 2.0)]]),
+            (vec![(1.0, 1.0)], vec![]),
+        ] {
+            let parts: Vec<_> = cut(&vertices(&track)).iter().map(|part| places(part)).collect();
+            assert_eq!(parts, expected, "{track:?}");
+        }
+    }
+
+    #[test]
+    fn lines_go_by_way_of_the_pole_that_they_pass() {
+        let over = by_way_of_poles(&vertices(&[(10.0, 80.0), (-170.0, 89.0)]));
+        assert_eq!(places(&over), [(10.0, 80.0), (10.0, 90.0), (-170.0, 90.0), (-170.0, 89.0)]);
+        assert!((over[1].time - 10.0 / 11.0).abs() < 1e-15 && over[1].altitude.to_bits() == 100.0_f64.to_bits());
+        let over = by_way_of_poles(&vertices(&[(-100.0, -85.0), (85.0, -80.0)]));
+        assert_eq!(places(&over)[1..3], [(-100.0, -90.0), (85.0, -90.0)]);
+        for aside in [
+            // A quarter of a turn about the pole, half the equator, a line that passes the other pole.
+            [(0.0, 80.0), (90.0, 80.0)],
+            [(0.0, 5.0), (150.0, 5.0)],
+            [(0.0, 10.0), (100.0, -84.0)],
+            [(30.0, 90.0), (-150.0, 90.0)],
+        ] {
+            assert_eq!(places(&by_way_of_poles(&vertices(&aside))), aside);
         }
     }
 }
