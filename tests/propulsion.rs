@@ -272,6 +272,15 @@ fn thrust_ends_where_its_propellant_is_spent() {
     relative("mass", fly(&marked).last().mass, 4900.0, 1e-15);
 }
 
+/// So little that its burn is less than the rounding of the time.
+#[test]
+fn propellant_for_no_time_at_all_is_spent_at_once() {
+    let thrust = Thrust { propellant: Some(1e-20), ..THRUST };
+    let flight = fly(&Case { events: vec![at(30.0, switch_on(thrust))], ..orbit() });
+    assert!(matches!(flight.warnings(), [Warning::PropellantSpent { .. }]), "{:?}", flight.warnings());
+    assert!(miss(&flight, &fly(&orbit())) < 1e-2);
+}
+
 #[test]
 fn thrust_that_burns_the_whole_vehicle_is_an_error() {
     for propellant in [None, Some(1e6)] {

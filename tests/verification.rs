@@ -3,9 +3,10 @@
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
+use reentry::event::{Condition, Direction, Quantity};
 use reentry::simulate::SimulationError;
 use reentry::verification::{Verification, verify};
-use reentry::{Case, Scenario, Solver, Stop};
+use reentry::{Case, FlightPath, Scenario, Solver, Stop};
 
 use crate::check::{near, relative};
 use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
@@ -47,6 +48,18 @@ fn the_drift_of_the_energy_falls_with_the_tolerance() {
         before = energy_drift;
     }
     assert!(before < 1e-9 * 5.6e6, "{before:e}");
+}
+
+/// Dropped from rest, a condition on the angle is met at once: a leg without length.
+#[test]
+fn a_flight_that_is_over_at_once_is_in_balance() {
+    let condition = Condition { quantity: Quantity::FlightPathAngle, value: -0.05, direction: Direction::Falling };
+    let start =
+        FlightPath { speed: 0.0, flight_path_angle: 0.0, ..FlightPath::from_planet_fixed(&target_2().initial_state) };
+    let stop = Stop { when: vec![condition], ..Stop::default() };
+    let Verification { energy_drift, drag_work, thrust_work, .. } =
+        verified(&Case { initial_state: start.to_planet_fixed(), stop, ..target_2() });
+    assert!([energy_drift, drag_work, thrust_work].iter().all(|work| work.abs() < 1e-6));
 }
 
 proptest! {

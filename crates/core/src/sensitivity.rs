@@ -206,6 +206,9 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
                 stage = stage.after(happening, delay);
                 state = push::<F>(&flight.case.events[happening.event].then, &state);
             }
+            if stage.phase != leg.phase {
+                stage = stage.burnt_out(leg.phase, delay);
+            }
             forces = stage.forces(leg.regime);
             motion = formulation(forces.clone());
             let next = motion.derivative(time.into(), &state);

@@ -69,6 +69,10 @@ fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, P
         while let Some(happening) = happenings.next_if(|happening| happening.before.time <= start) {
             given += energy(&happening.after.state) - energy(&happening.before.state);
         }
+        // A leg that ends where it begins has nothing inside.
+        if start >= end {
+            continue;
+        }
         let motion = flight.motion(leg);
         let interpolant = motion.interpolant(&leg.step);
         let half = (end - start) / 2.0;

@@ -158,15 +158,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if ending.is_none() {
             settled?;
         }
-        if self.phase.burnout().is_some_and(|burnout| self.time >= burnout) {
-            self.log.warnings.push(Warning::PropellantSpent { time: self.time });
-            self.enter(self.phase.burnt_out(self.time))?;
-        }
+        self.burn_out()?;
         let mut eventless = true;
         if !self.alarms.is_empty() {
             self.look();
             while let Some(event) = self.alarms.next_event() {
                 self.happen(event)?;
+                self.burn_out()?;
                 self.look();
                 eventless = false;
             }
@@ -182,6 +180,15 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             Some(Exit { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
             None => Ok(None),
         }
+    }
+
+    /// Ends the thrust if its propellant is spent.
+    fn burn_out(&mut self) -> Result<(), SimulationError> {
+        if self.phase.burnout().is_some_and(|burnout| self.time >= burnout) {
+            self.log.warnings.push(Warning::PropellantSpent { time: self.time });
+            self.enter(self.phase.burnt_out(self.time))?;
+        }
+        Ok(())
     }
 
     /// Finds the conditions that are met at the present instant.
