@@ -1,0 +1,113 @@
+import type { Answer, Case } from './api';
+import { type Name, QUANTITIES } from './quantities';
+
+/** The numbers of a row, in SI, angles in degrees. */
+export type Numbers = Partial<Record<Name, number>>;
+
+/** The columns of a trajectory, in SI, angles in degrees. */
+export type Trajectory = Partial<Record<Name, number[]>> & { time: number[] };
+
+/** Something at an instant of a flight: its end, a peak, an event. */
+export interface Mark {
+  kind: 'start' | 'event' | 'peak' | 'end';
+  /** What a person calls it. */
+  label: string;
+  /** s. */
+  time: number;
+}
+
+/** A flight as the page holds it: angles in degrees, whatever the case has. */
+export interface Flight {
+  answer: Answer;
+  columns: Trajectory;
+  initial: Numbers;
+  final: Numbers;
+  marks: Mark[];
+}
+
+/** A flight beside others. */
+export interface Run {
+  id: number;
+  /** What it is called where several are shown. */
+  label: string;
+  /** Its colour, `--run-0` to `--run-6` in the style sheet; the current run has 0. */
+  colour: number;
+  case: Case;
+  flight: Flight;
+}
+
+const DEGREES = 180 / Math.PI;
+
+const PEAKS: Partial<Record<keyof Answer['peaks'], string>> = {
+  load_factor: 'greatest load',
+  dynamic_pressure: 'greatest dynamic pressure',
+  heat_flux: 'greatest heat flux',
+  altitude: 'highest point',
+};
+
+const ENDS: Record<Answer['termination'], string> = {
+  surface_impact: 'impact',
+  time_limit: 'end of time',
+  condition: 'stop condition',
+  atmosphere_exit: 'exit',
+};
+
+/** The flight of an answer with a trajectory. */
+export function flightOf(answer: Answer): Flight {
+  const factor = (name: Name) => (QUANTITIES[name].angle && answer.angle_unit === 'rad' ? DEGREES : 1);
+  const numbers = (row: object): Numbers =>
+    Object.fromEntries(
+      Object.entries(row)
+        .filter(([name]) => name in QUANTITIES)
+        .map(([name, value]) => [name, value * factor(name as Name)]),
+    );
+  const columns = Object.fromEntries(
+    Object.entries(answer.trajectory ?? {})
+      .filter(([name]) => name in QUANTITIES)
+      .map(([name, values]) => [name, factor(name as Name) === 1 ? values : (values as number[]).map((value) => value * DEGREES)]),
+  ) as Trajectory;
+  return { answer, columns, initial: numbers(answer.initial_state), final: numbers(answer.final_state), marks: marksOf(answer) };
+}
+
+function marksOf(answer: Answer): Mark[] {
+  const { initial_state, final_state, peaks, events, termination } = answer;
+  const marks: Mark[] = [{ kind: 'start', label: 'start', time: initial_state.time }];
+  for (const event of events ?? []) marks.push({ kind: 'event', label: event.name ?? `event ${event.index + 1}`, time: event.time });
+  for (const [name, label] of Object.entries(PEAKS)) {
+    const peak = peaks[name as keyof typeof peaks];
+    // A peak at an end of the flight is the end.
+    if (peak && peak.time > initial_state.time && peak.time < final_state.time) marks.push({ kind: 'peak', label, time: peak.time });
+  }
+  marks.push({ kind: 'end', label: ENDS[termination], time: final_state.time });
+  return marks;
+}
+
+/** The greatest index whose value is at most a given one, of an ascending list; 0 where none is. */
+export function indexBefore(ascending: number[], value: number): number {
+  let low = 0;
+  let high = ascending.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if ((ascending[middle] as number) <= value) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+/** A column at an instant, in a straight line between its rows (for an angle that wraps by the shorter way); NaN where there is none. */
+export function at(flight: Flight, name: Name, time: number): number {
+  const { time: times } = flight.columns;
+  const values = flight.columns[name];
+  if (!values?.length) return Number.NaN;
+  const before = indexBefore(times, time);
+  const after = Math.min(before + 1, times.length - 1);
+  const [t0, t1, v0, v1] = [times[before], times[after], values[before], values[after]] as [number, number, number, number];
+  const part = t1 > t0 ? Math.min(Math.max((time - t0) / (t1 - t0), 0), 1) : 0;
+  const step = QUANTITIES[name].angle ? wrapped(v1 - v0) : v1 - v0;
+  return v0 + part * step;
+}
+
+/** An angle, degrees, within half a turn. */
+export function wrapped(angle: number): number {
+  return angle - 360 * Math.round(angle / 360);
+}
