@@ -1,5 +1,5 @@
 import { computed, signal } from '@preact/signals';
-import type { Case, Problem, Theory } from './api';
+import type { Case, Problem, Solution, Theory } from './api';
 import type { Run } from './flight';
 import type { AngleUnit } from './quantities';
 
@@ -26,3 +26,15 @@ export const angleUnit = computed<AngleUnit>(() => (draft.value.angle_unit === '
 
 /** All flights that are shown: the current one, then the pins. */
 export const runs = computed<Run[]>(() => (current.value ? [current.value, ...pins.value] : pins.value));
+
+/** Whether a flight is under way. */
+export const isBusy = signal(false);
+
+/** The theory that is to be set beside the flight. */
+export const solution = signal<Solution | null>(null);
+
+/** Why there is no theory beside the flight. */
+export const theoryProblem = signal<Problem | null>(null);
+
+/** Something that went wrong beside the case, such as a file that is none. */
+export const notice = signal<string | null>(null);

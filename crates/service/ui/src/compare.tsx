@@ -1,0 +1,177 @@
+import type { Solution } from './api';
+import { difference, endsApart, type Figure, figuresOf, number } from './figures';
+import type { Run } from './flight';
+import { Scroll } from './scroll';
+import { angleUnit, current, pins, runs, solution, theory, theoryProblem } from './store';
+
+const MOST = 6;
+let lastId = 0;
+
+/** Keeps the current flight to compare with. */
+function pin(): void {
+  if (!current.value) return;
+  lastId += 1;
+  const used = pins.value.map((run) => run.colour);
+  const colour = [1, 2, 3, 4, 5, 6].find((candidate) => !used.includes(candidate)) ?? 1;
+  pins.value = [...pins.value, { ...current.value, id: lastId, label: `${current.value.case.name ?? 'Flight'} #${lastId}`, colour }];
+}
+
+/** The flights side by side, and what sets the pinned ones apart from the current one. */
+export function Compare() {
+  return (
+    <section class="panel" aria-label="Compare">
+      <div class="panel-head">
+        <h2>Compare</h2>
+        <button type="button" onClick={pin} disabled={!current.value || pins.value.length >= MOST}>
+          Pin this flight
+        </button>
+        {pins.value.length > 0 && (
+          <button
+            type="button"
+            onClick={() => {
+              pins.value = [];
+            }}
+          >
+            Unpin all
+          </button>
+        )}
+      </div>
+      {pins.value.length === 0 ? (
+        <p class="quiet">A pinned flight stays in the plots and on the map while the case changes; a table then shows the differences.</p>
+      ) : (
+        <Differences />
+      )}
+    </section>
+  );
+}
+
+function Differences() {
+  const [first, ...others] = runs.value;
+  if (!first) return null;
+  const unit = angleUnit.value;
+  const mine = figuresOf(first.flight, unit);
+  const theirs = others.map((run) => new Map(figuresOf(run.flight, unit).map((figure) => [figure.label, figure])));
+  return (
+    <Scroll label="Table of differences">
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">Figure</th>
+            {runs.value.map((run) => (
+              <th scope="col" key={run.id}>
+                <Name run={run} />
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {mine.map((figure) => (
+            <tr key={figure.label}>
+              <th scope="row">
+                {figure.label}
+                {figure.unit && `, ${figure.unit}`}
+              </th>
+              <td>{shown(figure)}</td>
+              {others.map((run, index) => (
+                <td key={run.id}>
+                  <Other figure={theirs[index]?.get(figure.label)} mine={figure} />
+                </td>
+              ))}
+            </tr>
+          ))}
+          <tr>
+            <th scope="row">Distance between the ends, km</th>
+            <td>–</td>
+            {others.map((run) => (
+              <td key={run.id}>{number(endsApart(first.flight, run.flight), 5)}</td>
+            ))}
+          </tr>
+        </tbody>
+      </table>
+    </Scroll>
+  );
+}
+
+function Name({ run }: { run: Run }) {
+  return (
+    <span class="run-name">
+      <span class={`swatch run-${run.colour}`} />
+      {run.id === 0 ? 'Current' : run.label}
+      {run.id !== 0 && (
+        <button
+          type="button"
+          class="small"
+          aria-label={`Unpin ${run.label}`}
+          onClick={() => {
+            pins.value = pins.value.filter((other) => other.id !== run.id);
+          }}
+        >
+          ×
+        </button>
+      )}
+    </span>
+  );
+}
+
+function Other({ figure, mine }: { figure: Figure | undefined; mine: Figure }) {
+  if (!figure) return <>–</>;
+  if (typeof figure.value !== 'number' || typeof mine.value !== 'number') return <>{shown(figure)}</>;
+  return (
+    <>
+      {shown(figure)} <small>{difference(figure.value - mine.value)}</small>
+    </>
+  );
+}
+
+function shown({ value }: Figure): string {
+  return typeof value === 'number' ? number(value) : value;
+}
+
+const SOLUTIONS: Record<Solution, string> = {
+  shallow_glide: 'Shallow glide',
+  loh: 'Loh’s second order',
+  steep_glide: 'Steep glide',
+  steep_ballistic: 'Steep ballistic',
+  medium_glide: 'Medium glide',
+};
+
+/** A closed-form theory to set beside the flight. */
+export function Theories() {
+  const answer = theory.value;
+  return (
+    <section class="panel" aria-label="Theory">
+      <div class="panel-head">
+        <h2>Theory</h2>
+        <label for="theory">beside the flight</label>
+        <select
+          id="theory"
+          value={solution.value ?? ''}
+          onChange={(event) => {
+            solution.value = (event.currentTarget.value || null) as Solution | null;
+          }}
+        >
+          <option value="">none</option>
+          {Object.entries(SOLUTIONS).map(([name, label]) => (
+            <option key={name} value={name}>
+              {label}
+            </option>
+          ))}
+        </select>
+      </div>
+      {answer && (
+        <p>
+          {SOLUTIONS[answer.solution]}, dashed in the plots,{' '}
+          {answer.valid.from_altitude === null || answer.valid.to_altitude === null
+            ? 'gives no number here: '
+            : `holds from ${number(answer.valid.from_altitude / 1e3, 4)} to ${number(answer.valid.to_altitude / 1e3, 4)} km: `}
+          {answer.valid.ends_because}.
+        </p>
+      )}
+      {theoryProblem.value && (
+        <p class="fault">
+          {theoryProblem.value.errors?.map(({ pointer, detail }) => `${pointer} ${detail}`).join(' · ') ?? theoryProblem.value.detail}
+        </p>
+      )}
+    </section>
+  );
+}

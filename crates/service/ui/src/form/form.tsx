@@ -1,0 +1,584 @@
+import schema from 'virtual:schema';
+import type { ComponentChildren } from 'preact';
+import { useState } from 'preact/hooks';
+import type { Case, State } from '../api';
+import { get, type Path, pointer, set } from '../case';
+import { angleUnit, draft, problem } from '../store';
+import { type Field, type Fields, type Kind, SCHEDULE, SECTIONS, THRUST } from './fields';
+import { NumberInput, RowsInput, TextInput } from './inputs';
+import type { Property } from './schema';
+import { rename, retype } from './state';
+
+/** The parts of a case, as they are folded. */
+const FOLDS: [string, (keyof Case)[]][] = [
+  ['Vehicle', ['vehicle']],
+  ['Initial state', ['initial_state', 'epoch']],
+  ['Control', ['control']],
+  ['Atmosphere and wind', ['atmosphere', 'density_factor', 'wind']],
+  ['Planet', ['planet']],
+  ['Heating', ['heating']],
+  ['Events', ['events']],
+  ['Stop', ['stop']],
+  ['Solver and output', ['solver', 'sensitivities', 'verify', 'output', 'echo']],
+];
+
+/** The form of the whole case. */
+export function Form() {
+  return (
+    <form class="form" aria-label="Case" onSubmit={(event) => event.preventDefault()}>
+      {FOLDS.map(([title, names], index) => (
+        <Fold key={title} title={title} names={names} isOpen={index < 3} />
+      ))}
+    </form>
+  );
+}
+
+function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; isOpen: boolean }) {
+  const faults = (problem.value?.errors ?? []).filter((error) => names.some((name) => isWithin(error.pointer, pointer([name]))));
+  const isUsed = names.some((name) => draft.value[name] !== undefined);
+  return (
+    <details class="fold" open={isOpen}>
+      <summary>
+        <span>{title}</span>
+        {faults.length > 0 ? (
+          <span class="badge bad">{faults.length === 1 ? '1 fault' : `${faults.length} faults`}</span>
+        ) : (
+          !isUsed && <span class="badge">default</span>
+        )}
+      </summary>
+      <div class="fold-body">
+        {names.map((name) => (
+          <Item key={name} field={SECTIONS[name]} path={[name]} property={schema.SimulateRequest?.[name]} isBare={names.length === 1} />
+        ))}
+      </div>
+    </details>
+  );
+}
+
+function isWithin(inner: string, outer: string): boolean {
+  return inner === outer || inner.startsWith(`${outer}/`);
+}
+
+/** What is wrong with a field; with its elements as well, where they are not fields of their own. */
+function faultsOf(path: Path, isWhole: boolean): string[] {
+  const own = pointer(path);
+  const faults = problem.value?.errors ?? [];
+  return faults
+    .filter((fault) => (isWhole ? isWithin(fault.pointer, own) : fault.pointer === own))
+    .map((fault) => (fault.pointer === own ? fault.detail : `${fault.pointer.slice(own.length + 1)}: ${fault.detail}`));
+}
+
+const put = (path: Path, value: unknown) => {
+  draft.value = set(draft.peek(), path, value);
+};
+
+interface ItemProps {
+  field: Field;
+  path: Path;
+  property?: Property | undefined;
+  /** Without its own heading: the fold has it. */
+  isBare?: boolean;
+}
+
+/** A field of a form. */
+function Item({ field, path, property, isBare = false }: ItemProps) {
+  const value = get(draft.value, path);
+  switch (field.kind) {
+    case 'number':
+    case 'text':
+    case 'words':
+    case 'flag':
+    case 'numbers':
+      return (
+        <Line label={field.label} path={path} property={property} unit={unitOf(field)}>
+          <Control field={field} path={path} property={property} />
+        </Line>
+      );
+    case 'vector':
+      return <Vector label={field.label} unit={field.unit} path={path} property={property} />;
+    case 'matrix':
+      return (
+        <Block label={field.label} path={path} property={property}>
+          <RowsInput
+            {...inputOf(path, true, property)}
+            value={(value as unknown[][] | undefined) ?? []}
+            onValue={(rows) => put(path, rows)}
+          />
+        </Block>
+      );
+    case 'several':
+      return <Several label={field.label} words={field.words} path={path} property={property} />;
+    case 'group':
+      return <Group field={field} path={path} property={property} isBare={isBare} />;
+    case 'variant':
+      return <Variant field={field} path={path} property={property} />;
+    case 'command':
+      return <Command label={field.label} path={path} property={property} />;
+    case 'thrust':
+      return <Thrust label={field.label} path={path} property={property} />;
+    case 'list':
+      return <List field={field} path={path} property={property} isBare={isBare} />;
+    case 'column':
+      return null;
+  }
+}
+
+function unitOf(field: { unit?: string; isAngle?: true } | Field): string | undefined {
+  if ('isAngle' in field && field.isAngle) return angleUnit.value === 'deg' ? '°' : 'rad';
+  return 'unit' in field ? field.unit : undefined;
+}
+
+const idOf = (path: Path) => `field${pointer(path)}`;
+
+/** What every input has: its identity, and what is wrong with it. */
+function inputOf(path: Path, isWhole: boolean, property?: Property) {
+  const faults = faultsOf(path, isWhole);
+  return {
+    id: idOf(path),
+    isBad: faults.length > 0,
+    describedBy: faults.length > 0 ? `${idOf(path)}-fault` : undefined,
+    help: property?.description,
+  };
+}
+
+function Faults({ path, isWhole = false }: { path: Path; isWhole?: boolean }) {
+  const faults = faultsOf(path, isWhole);
+  if (faults.length === 0) return null;
+  return (
+    <p class="fault" id={`${idOf(path)}-fault`}>
+      {faults.join(' · ')}
+    </p>
+  );
+}
+
+interface LineProps {
+  label: ComponentChildren;
+  path: Path;
+  property?: Property | undefined;
+  unit?: string | undefined;
+  children: ComponentChildren;
+}
+
+/** A label, an input and its unit. */
+function Line({ label, path, property, unit, children }: LineProps) {
+  return (
+    <div class="line" title={property?.description}>
+      {typeof label === 'string' ? <label for={idOf(path)}>{label}</label> : label}
+      {children}
+      <span class="unit">{unit}</span>
+      <Faults path={path} isWhole />
+    </div>
+  );
+}
+
+/** A label above an input that takes the whole width. */
+function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
+  return (
+    <div class="block" title={property?.description}>
+      <label for={idOf(path)}>{label}</label>
+      {children}
+      <Faults path={path} isWhole />
+    </div>
+  );
+}
+
+/** The input of a field that fits a line. */
+function Control({ field, path, property }: ItemProps) {
+  const value = get(draft.value, path);
+  const input = inputOf(path, field.kind === 'numbers', property);
+  const placeholder = property?.default === undefined ? undefined : String(property.default);
+  switch (field.kind) {
+    case 'number':
+      return (
+        <NumberInput
+          {...input}
+          value={value as number | string | undefined}
+          placeholder={placeholder}
+          onValue={(next) => put(path, next)}
+        />
+      );
+    case 'text':
+      return (
+        <TextInput
+          {...input}
+          value={value as string | undefined}
+          placeholder={field.hint ?? placeholder}
+          onValue={(next) => put(path, next)}
+        />
+      );
+    case 'words':
+      return <Words words={field.words} path={path} property={property} />;
+    case 'flag':
+      return (
+        <input
+          id={input.id}
+          type="checkbox"
+          checked={value === true}
+          onChange={(event) => put(path, event.currentTarget.checked ? true : undefined)}
+        />
+      );
+    case 'numbers':
+      return (
+        <RowsInput
+          {...input}
+          rows={1}
+          value={Array.isArray(value) && value.length > 0 ? [value] : []}
+          onValue={(rows) => put(path, rows.flat())}
+        />
+      );
+    default:
+      return null;
+  }
+}
+
+function Words({ words, path, property }: { words: Record<string, string>; path: Path; property?: Property | undefined }) {
+  const value = get(draft.value, path);
+  const isDefault = property?.default !== undefined;
+  const names = Object.keys(words);
+  if (names.length === 0) return <span class="unit">no rows</span>;
+  return (
+    <select {...select(path)} value={String(value ?? property?.default ?? '')} onChange={(event) => put(path, event.currentTarget.value)}>
+      {value === undefined && !isDefault && <option value="">choose</option>}
+      {names.map((name) => (
+        <option key={name} value={name}>
+          {words[name]}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+function select(path: Path) {
+  const { id, isBad, describedBy } = inputOf(path, false);
+  return { id, 'aria-invalid': isBad, 'aria-describedby': describedBy };
+}
+
+function Vector({ label, unit, path, property }: { label: string; unit: string; path: Path; property?: Property | undefined }) {
+  return (
+    <fieldset class="vector" title={property?.description}>
+      <legend>
+        {label}, {unit}
+      </legend>
+      {['x', 'y', 'z'].map((axis, index) => (
+        <NumberInput
+          key={axis}
+          {...inputOf([...path, index], false)}
+          label={`${label} ${axis}`}
+          placeholder={axis}
+          value={get(draft.value, [...path, index]) as number | undefined}
+          onValue={(next) => put(path, replaced(get(draft.peek(), path), index, next))}
+        />
+      ))}
+      <Faults path={path} isWhole />
+    </fieldset>
+  );
+}
+
+/** Three numbers with another in one place; what is missing is null, of which the service says that it is no number. */
+function replaced(vector: unknown, index: number, value: unknown): unknown[] {
+  const old = Array.isArray(vector) ? vector : [];
+  return [0, 1, 2].map((at) => (at === index ? (value ?? null) : (old[at] ?? null)));
+}
+
+function Several({
+  label,
+  words,
+  path,
+  property,
+}: {
+  label: string;
+  words: readonly string[];
+  path: Path;
+  property?: Property | undefined;
+}) {
+  const chosen = (get(draft.value, path) as string[] | undefined) ?? [];
+  const toggle = (word: string, isOn: boolean) => {
+    const next = isOn ? [...chosen, word] : chosen.filter((other) => other !== word);
+    put(path, next.length > 0 ? next : undefined);
+  };
+  return (
+    <details class="several" title={property?.description}>
+      <summary>
+        {label}: {chosen.length === 0 ? 'all' : chosen.length}
+      </summary>
+      {words.map((word) => (
+        <label key={word} class="check">
+          <input type="checkbox" checked={chosen.includes(word)} onChange={(event) => toggle(word, event.currentTarget.checked)} />
+          <code>{word}</code>
+        </label>
+      ))}
+    </details>
+  );
+}
+
+type GroupProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: 'group' }> };
+
+function Group({ field, path, isBare }: GroupProps) {
+  const isThere = get(draft.value, path) !== undefined;
+  const body = (!field.isOptional || isThere) && <Members fields={field.fields} schema={field.schema} path={path} />;
+  const toggle = field.isOptional && (
+    <label class="check">
+      <input type="checkbox" checked={isThere} onChange={(event) => put(path, event.currentTarget.checked ? emptyOf(field) : undefined)} />
+      {field.isOptional}
+    </label>
+  );
+  if (isBare || field.isOptional)
+    return (
+      <div class="group">
+        {toggle}
+        {body}
+        <Faults path={path} />
+      </div>
+    );
+  return (
+    <fieldset class="group">
+      <legend>{field.label}</legend>
+      {body}
+      <Faults path={path} />
+    </fieldset>
+  );
+}
+
+/** What an optional group begins with: an impulse needs its direction. */
+function emptyOf(field: Extract<Field, { kind: 'group' }>): object {
+  return 'along' in field.fields ? { along: 'velocity' } : {};
+}
+
+/** The fields of a schema: alternatives in one line, columns of one table side by side. */
+function Members({ fields, schema: name, path }: { fields: Fields; schema: string; path: Path }) {
+  const properties = schema[name] ?? {};
+  const isNeeded = isAsked(fields, path);
+  const done = new Set<string>();
+  return (
+    <>
+      {Object.entries(fields).map(([key, field]) => {
+        if (done.has(key) || !isNeeded(key)) return null;
+        const together = groupOf(fields, field);
+        for (const other of together) done.add(other);
+        if (field.kind === 'column') return <Table key={key} fields={fields} names={together} path={path} />;
+        if ('choice' in field && field.choice)
+          return <Choice key={field.choice} fields={fields} names={together} path={path} schema={name} />;
+        return <Item key={key} field={field} path={[...path, key]} property={properties[key]} />;
+      })}
+    </>
+  );
+}
+
+/** Fields that have a meaning only beside others: the numbers of a planet that is custom, the area but with a ballistic coefficient. */
+function isAsked(fields: Fields, path: Path): (name: string) => boolean {
+  const own = get(draft.value, path) as Record<string, unknown> | undefined;
+  if (fields === SECTIONS.planet.fields) {
+    const isCustom = own?.model === 'custom';
+    return (name) => isCustom || ['model', 'shape', 'gravity'].includes(name) || own?.[name] !== undefined;
+  }
+  if (fields === SECTIONS.vehicle.fields) {
+    const isBallistic = get(own, ['aerodynamics', 'type']) === 'ballistic';
+    return (name) => name !== 'reference_area' || !isBallistic || own?.[name] !== undefined;
+  }
+  return () => true;
+}
+
+function groupOf(fields: Fields, field: Field): string[] {
+  const key = field.kind === 'column' ? field.table : 'choice' in field ? field.choice : undefined;
+  if (!key) return [];
+  return Object.keys(fields).filter((name) => {
+    const other = fields[name] as Field;
+    return field.kind === 'column' ? other.kind === 'column' && other.table === key : 'choice' in other && other.choice === key;
+  });
+}
+
+/** Exactly one of several fields: its label chooses which. */
+function Choice({ fields, names, path, schema: of }: { fields: Fields; names: string[]; path: Path; schema: string }) {
+  const given = names.find((name) => get(draft.value, [...path, name]) !== undefined);
+  const [chosen, choose] = useState(names[0] as string);
+  const name = given ?? chosen;
+  const field = fields[name] as Field;
+  const property = schema[of]?.[name];
+  const isAngle =
+    field.kind === 'number' && names.includes('falls_through') && get(draft.value, [...path, 'quantity']) === 'flight_path_angle';
+  const change = (next: string) => {
+    choose(next);
+    if (path[0] === 'initial_state' && given) void rename(given, next);
+    else if (given) put(path, swapped(get(draft.peek(), path), given, next, fields[next] as Field));
+    else put([...path, next], startOf(fields[next] as Field, undefined));
+  };
+  const label = (
+    <select
+      class="choice"
+      aria-label={`${(fields[names[0] as string] as Field).label} or another`}
+      value={name}
+      onChange={(event) => change(event.currentTarget.value)}
+    >
+      {names.map((other) => (
+        <option key={other} value={other}>
+          {(fields[other] as Field).label}
+        </option>
+      ))}
+    </select>
+  );
+  if (field.kind === 'list')
+    return (
+      <div class="block">
+        {label}
+        <Item field={field} path={[...path, name]} property={property} isBare />
+      </div>
+    );
+  return (
+    <Line label={label} path={[...path, name]} property={property} unit={isAngle ? unitOf({ isAngle: true }) : unitOf(field)}>
+      <Control field={field} path={[...path, name]} property={property} />
+    </Line>
+  );
+}
+
+/** A part with one field in place of another. */
+function swapped(part: unknown, from: string, to: string, field: Field): unknown {
+  const { [from]: old, ...others } = part as Record<string, unknown>;
+  return { ...others, [to]: startOf(field, old) };
+}
+
+/** What a field begins with that takes another's place. */
+function startOf(field: Field, old: unknown): unknown {
+  if (field.kind === 'number') return typeof old === 'number' ? old : '';
+  if (field.kind === 'list') return [field.empty];
+  if (field.kind === 'words') return Object.keys(field.words)[0] ?? false;
+  return field.kind === 'numbers' ? [] : '';
+}
+
+/** Columns of as many numbers, edited as the rows of a table. */
+function Table({ fields, names, path }: { fields: Fields; names: string[]; path: Path }) {
+  const columns = names.map((name) => (get(draft.value, [...path, name]) as unknown[] | undefined) ?? []);
+  const length = Math.max(...columns.map((column) => column.length));
+  const filled = columns.filter((column, index) => index === 0 || column.length > 0);
+  const rows = Array.from({ length }, (_, row) => filled.map((column) => column[row]));
+  const titles = names.map((name) => {
+    const field = fields[name] as Field;
+    const unit = unitOf(field);
+    return unit ? `${field.label}, ${unit}` : field.label;
+  });
+  const store = (next: unknown[][]) => {
+    const width = Math.max(0, ...next.map((cells) => cells.length));
+    const written = names
+      .slice(0, Math.max(width, 2))
+      .map((name, index) => [name, next.flatMap((cells) => (cells[index] === undefined ? [] : [cells[index]]))]);
+    const { ...part } = get(draft.peek(), path) as Record<string, unknown>;
+    for (const name of names) delete part[name];
+    put(path, { ...part, ...Object.fromEntries(written) });
+  };
+  const first = [...path, names[0] as string];
+  return (
+    <div class="block">
+      <label for={idOf(first)}>{titles.join(' | ')}</label>
+      <RowsInput {...inputOf(first, true)} value={rows} onValue={store} />
+      {names.map((name) => (
+        <Faults key={name} path={[...path, name]} isWhole />
+      ))}
+    </div>
+  );
+}
+
+type VariantProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: 'variant' }> };
+
+/** One of several kinds. The initial state keeps what it is where its coordinate system changes. */
+function Variant({ field, path, property }: VariantProps) {
+  const type = get(draft.value, [...path, 'type']) as string | undefined;
+  const kind: Kind | undefined = type === undefined ? undefined : field.kinds[type];
+  const change = (next: string) => {
+    if (path[0] === 'initial_state') void retype(next as State['type']);
+    else put(path, next === '' ? undefined : { type: next });
+  };
+  return (
+    <div class="group">
+      <Line label={path[0] === 'initial_state' ? 'Coordinates' : field.label} path={[...path, 'type']} property={property}>
+        <select {...select([...path, 'type'])} value={type ?? ''} onChange={(event) => change(event.currentTarget.value)}>
+          {(field.none !== undefined || kind === undefined) && <option value="">{field.none ?? 'choose'}</option>}
+          {Object.entries(field.kinds).map(([name, { label }]) => (
+            <option key={name} value={name}>
+              {label}
+            </option>
+          ))}
+        </select>
+      </Line>
+      <Faults path={path} />
+      {kind && <Members key={type} fields={kind.fields} schema={kind.schema} path={path} />}
+    </div>
+  );
+}
+
+/** An angle, or a schedule of it. */
+function Command({ label, path, property }: { label: string; path: Path; property?: Property | undefined }) {
+  const value = get(draft.value, path);
+  const isSchedule = typeof value === 'object' && value !== null;
+  const toggle = (isOn: boolean) =>
+    put(
+      path,
+      isOn
+        ? { type: 'schedule', against: 'time', at: [0], value: [typeof value === 'number' ? value : 0] }
+        : (get(value, ['value', 0]) ?? undefined),
+    );
+  return (
+    <div class="group">
+      <div class="line" title={property?.description}>
+        <label for={idOf(path)}>{label}</label>
+        {isSchedule ? (
+          <span class="unit">by the schedule below</span>
+        ) : (
+          <Control field={{ kind: 'number', label, isAngle: true }} path={path} property={property} />
+        )}
+        <span class="unit">{unitOf({ isAngle: true })}</span>
+        <Faults path={path} />
+      </div>
+      <label class="check">
+        <input type="checkbox" checked={isSchedule} onChange={(event) => toggle(event.currentTarget.checked)} />
+        {label} by a schedule
+      </label>
+      {isSchedule && <Members fields={SCHEDULE.fields} schema={SCHEDULE.schema} path={path} />}
+    </div>
+  );
+}
+
+/** Another thrust, or none any more. */
+function Thrust({ label, path, property }: { label: string; path: Path; property?: Property | undefined }) {
+  const value = get(draft.value, path);
+  const state = value === undefined ? '' : value === 'off' ? 'off' : 'on';
+  const change = (next: string) => put(path, next === '' ? undefined : next === 'off' ? 'off' : { along: 'velocity' });
+  return (
+    <div class="group">
+      <Line label={label} path={path} property={property}>
+        <select {...select(path)} value={state} onChange={(event) => change(event.currentTarget.value)}>
+          <option value="">as before</option>
+          <option value="on">switched on</option>
+          <option value="off">switched off</option>
+        </select>
+      </Line>
+      {state === 'on' && <Members fields={THRUST} schema="Thrust" path={path} />}
+    </div>
+  );
+}
+
+type ListProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: 'list' }> };
+
+function List({ field, path, isBare }: ListProps) {
+  const items = (get(draft.value, path) as unknown[] | undefined) ?? [];
+  return (
+    <div class="list">
+      {!isBare && <p class="list-title">{field.label}</p>}
+      <Faults path={path} />
+      {items.map((_, index) => (
+        <div class="list-item" key={`${items.length}-${index}`}>
+          <div class="list-head">
+            <span>
+              {field.one} {index + 1}
+            </span>
+            <button type="button" onClick={() => put([...path, index], undefined)} aria-label={`Remove ${field.one} ${index + 1}`}>
+              Remove
+            </button>
+          </div>
+          <Item field={field.item} path={[...path, index]} isBare />
+        </div>
+      ))}
+      <button type="button" onClick={() => put(path, [...items, structuredClone(field.empty)])}>
+        Add {/^[aeiou]/.test(field.one) ? 'an' : 'a'} {field.one}
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,106 @@
+import { useEffect, useState } from 'preact/hooks';
+import { typed } from '../case';
+
+interface Common {
+  id: string;
+  label?: string | undefined;
+  /** Identifiers of the texts that say what is wrong. */
+  describedBy?: string | undefined;
+  isBad: boolean;
+  help?: string | undefined;
+}
+
+interface TextProps<T> extends Common {
+  value: T | undefined;
+  placeholder?: string | undefined;
+  onValue(value: T | undefined): void;
+}
+
+const attributes = ({ id, label, describedBy, isBad, help }: Common) => ({
+  id,
+  'aria-label': label,
+  'aria-invalid': isBad,
+  'aria-describedby': describedBy,
+  'aria-description': help,
+});
+
+/** A field for a number. What is typed stays as it is typed as long as it means the value. */
+export function NumberInput({ value, placeholder, onValue, ...common }: TextProps<number | string>) {
+  const [text, setText] = useState(shown(value));
+  useEffect(() => {
+    if (typed(text) !== value) setText(shown(value));
+  }, [value]);
+  return (
+    <input
+      {...attributes(common)}
+      type="text"
+      inputMode="text"
+      autocomplete="off"
+      spellcheck={false}
+      value={text}
+      placeholder={placeholder}
+      onInput={(event) => {
+        setText(event.currentTarget.value);
+        onValue(typed(event.currentTarget.value));
+      }}
+    />
+  );
+}
+
+function shown(value: unknown): string {
+  return value === undefined || value === null ? '' : String(value);
+}
+
+/** A field for a text; nothing typed is no text. */
+export function TextInput({ value, placeholder, onValue, ...common }: TextProps<string>) {
+  return (
+    <input
+      {...attributes(common)}
+      type="text"
+      autocomplete="off"
+      spellcheck={false}
+      value={shown(value)}
+      placeholder={placeholder}
+      onInput={(event) => onValue(event.currentTarget.value || undefined)}
+    />
+  );
+}
+
+/** A field for rows of numbers, as they come from a spreadsheet: cells apart by tabs, commas, semicolons or blanks. */
+export function RowsInput({
+  value,
+  rows = 6,
+  onValue,
+  ...common
+}: Common & { value: unknown[][]; rows?: number; onValue(value: unknown[][]): void }) {
+  const [text, setText] = useState(written(value));
+  useEffect(() => {
+    if (written(parsed(text)) !== written(value)) setText(written(value));
+  }, [written(value)]);
+  return (
+    <textarea
+      {...attributes(common)}
+      rows={rows}
+      spellcheck={false}
+      value={text}
+      onInput={(event) => {
+        setText(event.currentTarget.value);
+        onValue(parsed(event.currentTarget.value));
+      }}
+    />
+  );
+}
+
+/** The rows of a text, a cell a number where it is one. */
+export function parsed(text: string): unknown[][] {
+  return text
+    .split('\n')
+    .map((line) => line.split(/[\s,;]+/).filter((cell) => cell !== ''))
+    .filter((cells) => cells.length > 0)
+    .map((cells) => cells.map(typed));
+}
+
+/** Rows as text. */
+export function written(rows: unknown[][]): string {
+  return rows.map((cells) => cells.map(shown).join('  ')).join('\n');
+}

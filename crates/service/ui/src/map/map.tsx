@@ -1,0 +1,3 @@
+export default function Maps() {
+  return null;
+}

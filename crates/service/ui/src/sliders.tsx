@@ -1,0 +1,91 @@
+import { useRef, useState } from 'preact/hooks';
+import { get, type Path, set } from './case';
+import { number } from './figures';
+import { angleUnit, draft } from './store';
+
+interface Slider {
+  label: string;
+  path: Path;
+  unit: string;
+  isAngle?: true;
+  /** Where it begins and ends, of a value in its unit, angles in degrees. */
+  range(value: number): [number, number];
+  /** What holds where the case does not say. */
+  without?: number;
+}
+
+const around = (share: number) => (value: number) => [value * (1 - share), value * (1 + share)] as [number, number];
+
+/** The numbers that matter, of whichever the case has. */
+const SLIDERS: Slider[] = [
+  ...['flight_path_angle', 'inertial_flight_path_angle'].map(
+    (name): Slider => ({
+      label: 'Flight-path angle',
+      path: ['initial_state', name],
+      unit: '°',
+      isAngle: true,
+      range: (value) => [Math.max(value - 5, -90), Math.min(value + 5, 90)],
+    }),
+  ),
+  ...['speed', 'inertial_speed'].map(
+    (name): Slider => ({ label: 'Speed', path: ['initial_state', name], unit: 'm/s', range: around(0.25) }),
+  ),
+  { label: 'Eccentricity', path: ['initial_state', 'eccentricity'], unit: '', range: around(0.02) },
+  { label: 'Bank angle', path: ['control', 'bank_angle'], unit: '°', isAngle: true, range: () => [-180, 180], without: 0 },
+  { label: 'Mass', path: ['vehicle', 'mass'], unit: 'kg', range: (value) => [value / 2, value * 2] },
+  { label: 'Air density', path: ['density_factor'], unit: '×', range: () => [0.5, 1.5], without: 1 },
+];
+
+const STEPS = 1000;
+
+/** Sliders: the flight changes while they move. */
+export function Sliders() {
+  const shown = SLIDERS.filter((slider) => typeof (get(draft.value, slider.path) ?? slider.without) === 'number');
+  return (
+    <fieldset class="sliders">
+      <legend>Vary</legend>
+      {shown.map((slider) => (
+        <SliderLine key={slider.path.join('/')} slider={slider} />
+      ))}
+    </fieldset>
+  );
+}
+
+function SliderLine({ slider }: { slider: Slider }) {
+  const perDegree = slider.isAngle && angleUnit.value === 'rad' ? Math.PI / 180 : 1;
+  const value = ((get(draft.value, slider.path) as number | undefined) ?? slider.without ?? 0) / perDegree;
+  const isMoving = useRef(false);
+  const [range, setRange] = useState(() => slider.range(value));
+  const isOutside = value < range[0] - 1e-9 || value > range[1] + 1e-9;
+  const [low, high] = isOutside && !isMoving.current ? slider.range(value) : range;
+  if (isOutside && !isMoving.current) setRange([low, high]);
+  const step = (high - low) / STEPS;
+  const id = `slider-${slider.path.join('-')}`;
+  return (
+    <div class="slider">
+      <label for={id}>{slider.label}</label>
+      <output for={id}>
+        {number(value, 6)} {slider.unit}
+      </output>
+      <input
+        id={id}
+        type="range"
+        min={0}
+        max={STEPS}
+        step={1}
+        value={high > low ? Math.round((value - low) / step) : 0}
+        aria-valuetext={`${number(value, 6)} ${slider.unit}`}
+        onPointerDown={() => {
+          isMoving.current = true;
+        }}
+        onPointerUp={() => {
+          isMoving.current = false;
+        }}
+        onInput={(event) => {
+          const next = low + Number(event.currentTarget.value) * step;
+          draft.value = set(draft.peek(), slider.path, Number((Number(next.toPrecision(5)) * perDegree).toPrecision(12)));
+        }}
+      />
+    </div>
+  );
+}

@@ -1,0 +1,43 @@
+import { address, type Case } from './api';
+
+/** The case as JSON. */
+export function asJson(tree: Case): string {
+  return JSON.stringify(tree, null, 2);
+}
+
+/** A command for a shell that flies the case. */
+export function asCurl(tree: Case): string {
+  return `curl '${address('simulate')}' -H 'content-type: application/json' -d '${asJson(tree).replaceAll("'", "'\\''")}'\n`;
+}
+
+/** A program in Python, with `requests`, that flies the case. */
+export function asPython(tree: Case): string {
+  return `import requests
+
+case = ${python(tree)}
+
+response = requests.post("${address('simulate')}", json=case)
+flight = response.json()
+if not response.ok:
+    raise SystemExit(flight["detail"])
+print(flight["termination"], flight["final_state"])
+`;
+}
+
+/** A value of JSON as a literal of Python; a string of JSON is one already. */
+function python(value: unknown, indent = ''): string {
+  const inner = `${indent}    `;
+  if (value === true) return 'True';
+  if (value === false) return 'False';
+  if (value === null || value === undefined) return 'None';
+  if (Array.isArray(value)) {
+    const isFlat = value.every((item) => typeof item !== 'object');
+    if (isFlat) return `[${value.map((item) => python(item)).join(', ')}]`;
+    return `[\n${value.map((item) => `${inner}${python(item, inner)},\n`).join('')}${indent}]`;
+  }
+  if (typeof value === 'object') {
+    const items = Object.entries(value).map(([name, item]) => `${inner}${JSON.stringify(name)}: ${python(item, inner)},\n`);
+    return `{\n${items.join('')}${indent}}`;
+  }
+  return JSON.stringify(value);
+}

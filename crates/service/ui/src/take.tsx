@@ -1,0 +1,106 @@
+import { useSignal } from '@preact/signals';
+import { download, ProblemError } from './api';
+import { tidied } from './case';
+import { toFragment } from './link';
+import { asCurl, asJson, asPython } from './snippets';
+import { draft } from './store';
+
+const FORMATS = ['csv', 'json', 'geojson', 'kml', 'czml'] as const;
+
+/** What a user takes along: the link, the case in three languages, the flight as a file. */
+export function Take() {
+  const said = useSignal('');
+  const say = (text: string) => {
+    said.value = text;
+  };
+  const copy = async (what: string, text: string) => {
+    await copied(text);
+    say(`${what} copied`);
+  };
+  const link = async () => {
+    const fragment = await toFragment(tidied(draft.value));
+    history.replaceState(null, '', fragment);
+    await copy('Link', new URL(fragment, location.href).href);
+  };
+  const save = async (format: (typeof FORMATS)[number]) => {
+    try {
+      const blob = await download(`simulate?format=${format}`, bodyFor(format));
+      saved(blob, `${fileName()}.${format}`);
+      say(`${format.toUpperCase()} saved`);
+    } catch (error) {
+      say(
+        error instanceof ProblemError
+          ? `Not saved: ${[error.message, ...(error.problem.errors ?? []).map(({ pointer, detail }) => `${pointer} ${detail}`)].join(' ')}`
+          : 'Not saved: the service does not answer.',
+      );
+    }
+  };
+  return (
+    <section class="take" aria-label="Take along">
+      <div class="buttons">
+        <span class="quiet">Copy</span>
+        <button type="button" onClick={() => void link()}>
+          Link
+        </button>
+        <button type="button" onClick={() => void copy('curl command', asCurl(tidied(draft.value)))}>
+          curl
+        </button>
+        <button type="button" onClick={() => void copy('JSON', asJson(tidied(draft.value)))}>
+          JSON
+        </button>
+        <button type="button" onClick={() => void copy('Python program', asPython(tidied(draft.value)))}>
+          Python
+        </button>
+      </div>
+      <div class="buttons">
+        <span class="quiet">Download</span>
+        {FORMATS.map((format) => (
+          <button key={format} type="button" onClick={() => void save(format)}>
+            {format === 'geojson' ? 'GeoJSON' : format.toUpperCase()}
+          </button>
+        ))}
+        <button
+          type="button"
+          onClick={() => saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName()}.case.json`)}
+        >
+          Case
+        </button>
+        <button type="button" onClick={() => print()}>
+          Print
+        </button>
+      </div>
+      <output class="quiet" aria-live="polite">
+        {said.value}
+      </output>
+    </section>
+  );
+}
+
+/** The case for a format: a table and a map have no place for what is said about a flight. */
+function bodyFor(format: (typeof FORMATS)[number]): object {
+  const { sensitivities, verify, ...flight } = tidied(draft.value);
+  return format === 'json' ? { ...flight, sensitivities, verify } : flight;
+}
+
+function fileName(): string {
+  return (draft.value.name ?? 'flight').replaceAll(/[^\w.-]+/g, '_');
+}
+
+function saved(blob: Blob, name: string): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** Copies a text, also where the page is not served securely and browsers keep their clipboard to themselves. */
+async function copied(text: string): Promise<void> {
+  if (navigator.clipboard) return navigator.clipboard.writeText(text);
+  const area = document.createElement('textarea');
+  area.value = text;
+  document.body.append(area);
+  area.select();
+  document.execCommand('copy');
+  area.remove();
+}
