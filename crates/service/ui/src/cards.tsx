@@ -48,10 +48,7 @@ export function Warnings() {
     <section class="notice warn" aria-label="Warnings">
       <ul>
         {warnings.map(({ code, detail, time }) => (
-          <li key={`${code}${time}`}>
-            {detail}
-            {time !== undefined && ` (at ${number(time, 5)} s)`}
-          </li>
+          <li key={`${code}${time}`}>{detail}</li>
         ))}
       </ul>
     </section>

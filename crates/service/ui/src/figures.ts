@@ -39,7 +39,14 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
     const like = name === 'heat_flux' ? 'convective_heat_flux' : name;
     const { label, unit, scale } = QUANTITIES[like];
     const title = name === 'heat_flux' ? 'Heat flux' : label;
-    return [{ label: name === 'heat_load' ? title : `Peak ${title.toLowerCase()}`, unit, value: peak.value * scale, note: whereOf(peak) }];
+    return [
+      {
+        label: name === 'heat_load' ? title : `Peak ${title === 'Mach number' ? title : title.toLowerCase()}`,
+        unit,
+        value: peak.value * scale,
+        note: whereOf(peak),
+      },
+    ];
   });
   const highest = answer.peaks.altitude;
   return [

@@ -1,0 +1,120 @@
+import { describe, expect, it } from 'vitest';
+import type { Answer } from '../../src/api';
+import { difference, endsApart, figuresOf, number, placeOf } from '../../src/figures';
+import { at, flightOf, indexBefore } from '../../src/flight';
+
+const peak = (value: number) => ({ value, time: 50, altitude: 40_000 });
+
+/** A flight of three rows in radians, across the antimeridian. */
+const ANSWER = {
+  angle_unit: 'rad',
+  version: '0',
+  models: {},
+  termination: 'surface_impact',
+  initial_state: {
+    time: 0,
+    altitude: 1e5,
+    longitude: 3.1,
+    geocentric_latitude: 0,
+    geodetic_latitude: 0,
+    speed: 7000,
+    flight_path_angle: -0.1,
+    radius: 6.4e6,
+  },
+  final_state: {
+    time: 100,
+    altitude: 0,
+    longitude: -3.1,
+    geocentric_latitude: 0.5,
+    geodetic_latitude: 0.5,
+    speed: 200,
+    flight_path_angle: -Math.PI / 2,
+    radius: 6.4e6,
+  },
+  peaks: {
+    deceleration: peak(98),
+    load_factor: peak(10),
+    dynamic_pressure: peak(20_000),
+    altitude: { value: 1e5, time: 0, altitude: 1e5 },
+    heat_flux: peak(1.5e6),
+  },
+  events: [{ index: 1, time: 60 }],
+  trajectory: { time: [0, 50, 100], altitude: [1e5, 4e4, 0], longitude: [3.1, 3.14, -3.1] },
+  solver: {},
+  warnings: [],
+} as unknown as Answer;
+
+describe('a flight', () => {
+  const flight = flightOf(ANSWER);
+
+  it('has its angles in degrees', () => {
+    expect(flight.columns.longitude?.[0]).toBeCloseTo(177.6169, 4);
+    expect(flight.final.flight_path_angle).toBeCloseTo(-90, 12);
+    expect(flight.columns.altitude).toEqual([1e5, 4e4, 0]);
+  });
+
+  it('goes the shorter way between two angles', () => {
+    // 3.14 to 2π - 3.1, halfway.
+    expect(at(flight, 'longitude', 75)).toBeCloseTo(((3.14 + 2 * Math.PI - 3.1) / 2) * (180 / Math.PI), 9);
+  });
+
+  it('holds at its ends', () => {
+    expect(at(flight, 'altitude', -5)).toBe(1e5);
+    expect(at(flight, 'altitude', 500)).toBe(0);
+    expect(at(flight, 'altitude', 25)).toBe(7e4);
+    expect(at(flight, 'mach', 25)).toBeNaN();
+  });
+
+  it('marks its events, the peaks on the way, and its end', () => {
+    expect(flight.marks.map(({ kind, label, time }) => [kind, label, time])).toEqual([
+      ['start', 'start', 0],
+      ['event', 'event 2', 60],
+      ['peak', 'greatest load', 50],
+      ['peak', 'greatest dynamic pressure', 50],
+      ['peak', 'greatest heat flux', 50],
+      ['end', 'impact', 100],
+    ]);
+  });
+
+  it('has figures in the unit of angles', () => {
+    const figure = (unit: 'rad' | 'deg', label: string) => figuresOf(flight, unit).find((candidate) => candidate.label === label);
+    expect(figure('deg', 'Flight-path angle at the end')).toMatchObject({ unit: '°', value: expect.closeTo(-90, 10) });
+    expect(figure('rad', 'Flight-path angle at the end')).toMatchObject({ unit: 'rad', value: expect.closeTo(-Math.PI / 2, 12) });
+    expect(figure('rad', 'Peak heat flux')).toMatchObject({ unit: 'kW/m²', value: 1500, note: 'at 40 km, 50 s' });
+    expect(figure('rad', 'Peak Mach number')).toBeUndefined();
+    expect(placeOf(flight.final)).toBe('28.64789°, -177.61692°');
+  });
+
+  it('ends as far from another as the arc between them', () => {
+    const other = flightOf({ ...ANSWER, final_state: { ...ANSWER.final_state, geocentric_latitude: 0.6 } });
+    expect(endsApart(flight, other)).toBeCloseTo(640, 9);
+    expect(endsApart(flight, flight)).toBe(0);
+  });
+});
+
+it.each([
+  [0, '0'],
+  [157.41009, '157.41'],
+  [-1.2025585, '−1.20256'],
+  [4597.4716669, '4597.47'],
+  [123456.789, '123,457'],
+  [1.234e-7, '1.234e−7'],
+  [-5e12, '−5e12'],
+  [Number.NaN, '–'],
+])('%d is shown as %s', (value, text) => {
+  expect(number(value)).toBe(text);
+});
+
+it('a difference has its sign', () => {
+  expect([0.12345, -0.12345, 0].map(difference)).toEqual(['+0.1235', '−0.1235', '0']);
+});
+
+it.each([
+  [-1, 0],
+  [0, 0],
+  [1.5, 1],
+  [2, 2],
+  [9, 3],
+])('the index before %d is %d', (value, index) => {
+  expect(indexBefore([0, 1, 2, 3], value)).toBe(index);
+});
