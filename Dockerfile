@@ -1,4 +1,13 @@
 # syntax=docker/dockerfile:1
+FROM node:22-bookworm-slim AS page
+WORKDIR /src/crates/service/ui
+COPY crates/service/ui/package.json crates/service/ui/package-lock.json ./
+RUN --mount=type=cache,target=/root/.npm npm ci --no-audit --no-fund
+COPY openapi /src/openapi
+COPY tests/cases /src/tests/cases
+COPY crates/service/ui ./
+RUN npm run build
+
 FROM rust:1.95-bookworm AS build
 WORKDIR /src
 # `tests` is a member of the workspace, which cargo reads as a whole, and has the reference cases, which the service holds, as it does
@@ -7,10 +16,13 @@ COPY Cargo.toml Cargo.lock ./
 COPY crates crates
 COPY tests tests
 COPY openapi/examples openapi/examples
+COPY --from=page /src/crates/service/ui/dist crates/service/ui/dist
 # What is downloaded and compiled stays on the builder, so that a change compiles the changed crates alone. The folders are not
 # part of the image: the program is copied out of them.
+# The page is touched: one out of the builder's store may be older than what was compiled last, and pass for the same.
 RUN --mount=type=cache,target=/usr/local/cargo/registry \
     --mount=type=cache,target=/src/target \
+    touch crates/service/ui/dist && \
     cargo build --release --locked --package reentry-service && cp target/release/reentry /usr/local/bin/reentry
 
 # Of the same Debian as the build, with nothing but the C library: no shell, and a user without rights.

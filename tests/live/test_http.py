@@ -1,4 +1,4 @@
-"""HTTP on the wire: compression, sizes of bodies, and the pages under /docs."""
+"""HTTP on the wire: compression, sizes of bodies, the page at / and those under /docs."""
 
 import gzip
 import re
@@ -72,6 +72,24 @@ def test_the_docs_load_nothing_from_elsewhere(service):
     served(service, "/docs/", re.search(r'"url": "([^"]+)"', settings)[1])
     # Left alone, the page sends every document to the validator of swagger.io and shows its badge.
     assert re.search(r'"validatorUrl": "none"', settings), settings
+
+
+def test_the_page_is_the_same_in_every_coding(service):
+    page = service.get("/")
+    found = References()
+    found.feed(page.body.decode())
+    scripts = [reference for reference in found.references if reference.endswith(".js")]
+    assert scripts, "the page was not built"
+    for reference in ["/", *found.references]:
+        plain = served(service, "/", reference)
+        if "content-security-policy" in plain.headers:
+            path = urlsplit(urljoin(service.url, reference)).path
+            packed = service.get(path, {"accept-encoding": "gzip"})
+            assert packed.headers["content-encoding"] == "gzip", path
+            assert gzip.decompress(packed.body) == plain.body, path
+            smallest = service.get(path, {"accept-encoding": "gzip, deflate, br, zstd"})
+            assert smallest.headers["content-encoding"] == "br", path
+            assert len(smallest.body) < len(packed.body), path
 
 
 class References(HTMLParser):

@@ -10,6 +10,6 @@ pub mod batch;
 pub mod convert;
 pub mod docs;
 pub mod health;
-pub mod home;
+pub mod page;
 pub mod simulate;
 pub mod validation;

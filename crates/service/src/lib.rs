@@ -6,6 +6,7 @@ pub mod answer;
 pub mod cli;
 pub mod compute;
 pub mod config;
+pub mod embedded;
 pub mod endpoints;
 pub mod error;
 pub mod extract;
