@@ -5,7 +5,7 @@ import { address, type Case } from './api';
 import { Cards, Computing, Problems, Sensitivities, Warnings } from './cards';
 import { inUnit } from './case';
 import { Compare, Theories } from './compare';
-import { opened, start } from './fly';
+import { opened, start, take } from './fly';
 import { Form } from './form/form';
 import { Plots } from './plots/plots';
 import { Sliders } from './sliders';
@@ -61,7 +61,7 @@ export function App() {
 function begin(): () => void {
   start();
   void opened().then(async (isOpen) => {
-    if (!isOpen) draft.value = structuredClone((await examples())[0]?.case as Case);
+    if (!isOpen) take(structuredClone((await examples())[0]?.case as Case));
   });
   const over = (event: DragEvent) => event.preventDefault();
   const drop = (event: DragEvent) => {
@@ -84,7 +84,7 @@ async function openFile(file: File): Promise<void> {
   try {
     const tree = JSON.parse(await file.text());
     if (typeof tree !== 'object' || tree === null || Array.isArray(tree)) throw new Error('it is not a JSON object');
-    draft.value = tree.case ?? tree;
+    take(tree.case ?? tree);
     notice.value = null;
   } catch (error) {
     notice.value = `${file.name} cannot be opened: ${error instanceof Error ? error.message : error}.`;
@@ -196,7 +196,7 @@ function Open() {
         value=""
         onChange={(event) => {
           const chosen = list.value[Number(event.currentTarget.value)];
-          if (chosen) draft.value = structuredClone(chosen.case);
+          if (chosen) take(structuredClone(chosen.case));
           event.currentTarget.value = '';
         }}
       >

@@ -1,4 +1,4 @@
-import { effect } from '@preact/signals';
+import { batch, effect } from '@preact/signals';
 import { analytic, type Case, type Problem, ProblemError, type Solution, simulate } from './api';
 import { tidied } from './case';
 import { flightOf } from './flight';
@@ -35,8 +35,17 @@ export function start(): void {
 export async function opened(): Promise<boolean> {
   if (location.hash === address) return address !== '';
   const found = await fromFragment(location.hash);
-  if (found) draft.value = found;
+  if (found) take(found);
   return found !== null;
+}
+
+/** Takes a case; one of `/analytic` with the theory that it asks for. */
+export function take(tree: Case & { solution?: Solution }): void {
+  const { solution: asked, ...flight } = tree;
+  batch(() => {
+    draft.value = flight;
+    if (asked) solution.value = asked;
+  });
 }
 
 async function kept(tree: Case): Promise<void> {

@@ -38,6 +38,12 @@ const SLIDERS: Slider[] = [
 
 const STEPS = 1000;
 
+/** The range of a slider, which has the value in it even where that is none that could be flown. */
+function rangeOf(slider: Slider, value: number): [number, number] {
+  const ends = [value, ...slider.range(value)];
+  return [Math.min(...ends), Math.max(...ends)];
+}
+
 /** Sliders: the flight changes while they move. */
 export function Sliders() {
   const shown = SLIDERS.filter((slider) => typeof (get(draft.value, slider.path) ?? slider.without) === 'number');
@@ -55,9 +61,9 @@ function SliderLine({ slider }: { slider: Slider }) {
   const perDegree = slider.isAngle && angleUnit.value === 'rad' ? Math.PI / 180 : 1;
   const value = ((get(draft.value, slider.path) as number | undefined) ?? slider.without ?? 0) / perDegree;
   const isMoving = useRef(false);
-  const [range, setRange] = useState(() => slider.range(value));
+  const [range, setRange] = useState(() => rangeOf(slider, value));
   const isOutside = value < range[0] - 1e-9 || value > range[1] + 1e-9;
-  const [low, high] = isOutside && !isMoving.current ? slider.range(value) : range;
+  const [low, high] = isOutside && !isMoving.current ? rangeOf(slider, value) : range;
   if (isOutside && !isMoving.current) setRange([low, high]);
   const step = (high - low) / STEPS;
   const id = `slider-${slider.path.join('-')}`;

@@ -78,6 +78,8 @@ interface ItemProps {
   property?: Property | undefined;
   /** Without its own heading: the fold has it. */
   isBare?: boolean;
+  /** What an input is called that has no label of its own. */
+  name?: string | undefined;
 }
 
 /** A field of a form. */
@@ -90,7 +92,12 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
     case 'flag':
     case 'numbers':
       return (
-        <Line label={field.label} path={path} property={property} unit={unitOf(field)}>
+        <Line
+          label={field.kind === 'numbers' && unitOf(field) ? `${field.label}, ${unitOf(field)}` : field.label}
+          path={path}
+          property={property}
+          unit={field.kind === 'numbers' ? undefined : unitOf(field)}
+        >
           <Control field={field} path={path} property={property} />
         </Line>
       );
@@ -183,9 +190,9 @@ function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
 }
 
 /** The input of a field that fits a line. */
-function Control({ field, path, property }: ItemProps) {
+function Control({ field, path, property, name }: ItemProps) {
   const value = get(draft.value, path);
-  const input = inputOf(path, field.kind === 'numbers', property);
+  const input = { ...inputOf(path, field.kind === 'numbers', property), label: name };
   const placeholder = property?.default === undefined ? undefined : String(property.default);
   switch (field.kind) {
     case 'number':
@@ -207,7 +214,7 @@ function Control({ field, path, property }: ItemProps) {
         />
       );
     case 'words':
-      return <Words words={field.words} path={path} property={property} />;
+      return <Words words={field.words} path={path} property={property} name={name} />;
     case 'flag':
       return (
         <input
@@ -231,13 +238,28 @@ function Control({ field, path, property }: ItemProps) {
   }
 }
 
-function Words({ words, path, property }: { words: Record<string, string>; path: Path; property?: Property | undefined }) {
+function Words({
+  words,
+  path,
+  property,
+  name,
+}: {
+  words: Record<string, string>;
+  path: Path;
+  property?: Property | undefined;
+  name?: string | undefined;
+}) {
   const value = get(draft.value, path);
   const isDefault = property?.default !== undefined;
   const names = Object.keys(words);
   if (names.length === 0) return <span class="unit">no rows</span>;
   return (
-    <select {...select(path)} value={String(value ?? property?.default ?? '')} onChange={(event) => put(path, event.currentTarget.value)}>
+    <select
+      {...select(path)}
+      aria-label={name}
+      value={String(value ?? property?.default ?? '')}
+      onChange={(event) => put(path, event.currentTarget.value)}
+    >
       {value === undefined && !isDefault && <option value="">choose</option>}
       {names.map((name) => (
         <option key={name} value={name}>
@@ -425,7 +447,7 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
     );
   return (
     <Line label={label} path={[...path, name]} property={property} unit={isAngle ? unitOf({ isAngle: true }) : unitOf(field)}>
-      <Control field={field} path={[...path, name]} property={property} />
+      <Control field={field} path={[...path, name]} property={property} name={field.label} />
     </Line>
   );
 }

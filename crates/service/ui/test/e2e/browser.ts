@@ -68,6 +68,7 @@ export async function open(browser: Browser, url: string, options: BrowserContex
   });
   await page.goto(url);
   await page.locator('.card').first().waitFor({ state: 'attached' });
+  await page.waitForURL(/#case=/);
   return opened;
 }
 

@@ -212,9 +212,13 @@ it('a pinned flight stays, and a table shows the differences', async () => {
 it('a theory says where it holds, as the API does', async () => {
   const tree = example('steep_ballistic');
   const { page } = await on(tree);
-  await page.getByLabel('beside the flight').selectOption('steep_ballistic');
-  const answer = await ask(service.address, 'analytic', { ...tree, solution: 'steep_ballistic' });
+  const answer = await ask(service.address, 'analytic', tree);
   await page.getByText(answer.valid.ends_because).waitFor();
+  const choose = page.getByLabel('beside the flight');
+  expect(await choose.inputValue()).toBe('steep_ballistic');
+  await choose.selectOption('loh');
+  const refusal = await ask(service.address, 'analytic', { ...tree, solution: 'loh' });
+  await page.getByText(refusal.errors[0].detail).waitFor();
   await page.close();
 });
 
