@@ -1,6 +1,7 @@
 import { useSignal } from '@preact/signals';
 import { download, ProblemError } from './api';
 import { tidied } from './case';
+import { copied } from './clipboard';
 import { toFragment } from './link';
 import { asCurl, asJson, asPython } from './snippets';
 import { draft } from './store';
@@ -92,15 +93,4 @@ function saved(blob: Blob, name: string): void {
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
-/** Copies a text, also where the page is not served securely and browsers keep their clipboard to themselves. */
-async function copied(text: string): Promise<void> {
-  if (navigator.clipboard) return navigator.clipboard.writeText(text);
-  const area = document.createElement('textarea');
-  area.value = text;
-  document.body.append(area);
-  area.select();
-  document.execCommand('copy');
-  area.remove();
 }

@@ -1,3 +1,282 @@
+import { computed, effect, useSignal } from '@preact/signals';
+import { type GeoProjection, geoEquirectangular, geoOrthographic } from 'd3-geo';
+import { useEffect, useRef } from 'preact/hooks';
+import { copied } from '../clipboard';
+import { onTheme } from '../colours';
+import { number } from '../figures';
+import { at, indexBefore, type Run } from '../flight';
+import { current, cursor, draft, runs } from '../store';
+import { extent, middleOf, placeAt, ramp, written } from './geography';
+import { drawScene, isPlaced, type Scene } from './view';
+import './map.css';
+
+const scene = computed<Scene>(() => {
+  const instant = Date.parse(draft.value.epoch ?? '');
+  return { runs: runs.value, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
+});
+
+/** The ground track, on a world map and on a globe. */
 export default function Maps() {
-  return null;
+  const isClose = useSignal(false);
+  const run = current.value;
+  if (!run) return null;
+  return (
+    <section class="panel" aria-label="Ground track">
+      <div class="panel-head">
+        <h2>Ground track</h2>
+        <button
+          type="button"
+          aria-pressed={isClose.value}
+          onClick={() => {
+            isClose.value = !isClose.value;
+          }}
+        >
+          Zoom to the track
+        </button>
+        <Legend run={run} />
+      </div>
+      <div class="maps">
+        <World isClose={isClose.value} />
+        <Globe />
+      </div>
+      <Places run={run} />
+    </section>
+  );
+}
+
+/** A canvas that is drawn anew where the scene, the theme or its size changes, at most once a frame. */
+function useCanvas(draw: (ctx: CanvasRenderingContext2D, width: number, height: number, scene: Scene) => void, dependencies: unknown[]) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const redraw = useRef<() => void>(() => {});
+  useEffect(() => {
+    const element = canvas.current;
+    const ctx = element?.getContext('2d');
+    if (!element || !ctx) return;
+    let frame = 0;
+    const paint = () => {
+      frame = 0;
+      const { clientWidth: width, clientHeight: height } = element;
+      if (width === 0) return;
+      element.width = width * devicePixelRatio;
+      element.height = height * devicePixelRatio;
+      ctx.scale(devicePixelRatio, devicePixelRatio);
+      draw(ctx, width, height, scene.peek());
+    };
+    const ask = () => {
+      if (!frame) frame = requestAnimationFrame(paint);
+    };
+    redraw.current = ask;
+    const sizes = new ResizeObserver(ask);
+    sizes.observe(element);
+    const ends = [
+      effect(() => {
+        void scene.value;
+        ask();
+      }),
+      onTheme(ask),
+    ];
+    return () => {
+      cancelAnimationFrame(frame);
+      sizes.disconnect();
+      for (const end of ends) end();
+    };
+  }, dependencies);
+  return { canvas, redraw };
+}
+
+/** What the track is, for those who do not see it. */
+function summaryOf(run: Run): string {
+  const { final } = run.flight;
+  const [from, to] = [placeAt(run.flight, 0), placeAt(run.flight, final.time ?? 0)];
+  const range = final.downrange === undefined ? '' : `, ${number(final.downrange / 1e3, 5)} km`;
+  return `from ${written(from)} to ${written(to)}${range}`;
+}
+
+function World({ isClose }: { isClose: boolean }) {
+  const projection = useRef<GeoProjection>(geoEquirectangular());
+  const { canvas } = useCanvas(
+    (ctx, width, height, shown) => {
+      const flight = shown.runs[0]?.flight;
+      const near = geoEquirectangular();
+      if (isClose && flight) {
+        const places = flight.columns.time.map((time) => placeAt(flight, time));
+        near.rotate([-middleOf(flight)[0], 0]);
+        const margin = 40;
+        near.fitExtent(
+          [
+            [margin, margin],
+            [width - margin, height - margin],
+          ],
+          { type: 'MultiPoint', coordinates: [...places, ...around(middleOf(flight))] },
+        );
+      } else near.fitSize([width, height], { type: 'Sphere' });
+      projection.current = near;
+      const degrees = width / ((near.scale() * Math.PI) / 180);
+      drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : 2);
+    },
+    [isClose],
+  );
+  const run = current.value;
+  return (
+    <canvas
+      ref={canvas}
+      class="world"
+      role="img"
+      aria-label={run ? `World map with the track ${summaryOf(run)}` : 'World map'}
+      onPointerMove={(event) => look(projection.current, event)}
+    />
+  );
+}
+
+/** Places half a degree around another, so that the shortest track is not blown up to nothing but itself. */
+function around([longitude, latitude]: [number, number]): [number, number][] {
+  return [
+    [longitude - 0.5, Math.max(latitude - 0.5, -90)],
+    [longitude + 0.5, Math.min(latitude + 0.5, 90)],
+  ];
+}
+
+/** Looks at the instant whose place is nearest to the pointer, where one is near. */
+function look(projection: GeoProjection, event: PointerEvent): void {
+  const flight = current.value?.flight;
+  if (!flight || event.buttons !== 0) return;
+  const times = flight.columns.time;
+  let [best, least] = [-1, 20 ** 2];
+  for (let index = 0; index < times.length; index += 1) {
+    const point = projection(placeAt(flight, times[index] as number));
+    if (!point) continue;
+    const distance = (point[0] - event.offsetX) ** 2 + (point[1] - event.offsetY) ** 2;
+    if (distance < least) [best, least] = [index, distance];
+  }
+  if (best >= 0) cursor.value = times[best] as number;
+}
+
+const TURN: Record<string, [number, number]> = { ArrowLeft: [-8, 0], ArrowRight: [8, 0], ArrowUp: [0, 8], ArrowDown: [0, -8] };
+
+function Globe() {
+  const turned = useRef<[number, number] | null>(null);
+  const zoom = useRef(1);
+  const { canvas, redraw } = useCanvas((ctx, width, height, shown) => {
+    const flight = shown.runs[0]?.flight;
+    const [lambda, phi] = turned.current ?? (flight ? middleOf(flight).map((angle) => -angle) : [0, 0]);
+    const globe = geoOrthographic()
+      .clipAngle(90)
+      .translate([width / 2, height / 2])
+      .scale((Math.min(width, height) / 2 - 6) * zoom.current)
+      .rotate([lambda as number, phi as number]);
+    drawScene(ctx, globe, shown, 30);
+    angles.current = [lambda as number, phi as number];
+    radius.current = globe.scale();
+  }, []);
+  const angles = useRef<[number, number]>([0, 0]);
+  const radius = useRef(1);
+  const turn = (east: number, north: number) => {
+    const [lambda, phi] = angles.current;
+    turned.current = [lambda + east, Math.min(Math.max(phi - north, -90), 90)];
+    angles.current = turned.current;
+    redraw.current();
+  };
+  const scale = (factor: number) => {
+    zoom.current = Math.min(Math.max(zoom.current * factor, 1), 12);
+    redraw.current();
+  };
+  const run = current.value;
+  return (
+    <div class="globe">
+      <canvas
+        ref={canvas}
+        role="img"
+        tabIndex={0}
+        aria-label={run ? `Globe with the track ${summaryOf(run)}; the arrow keys turn it` : 'Globe'}
+        onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+        onPointerMove={(event) => {
+          if (event.buttons === 0) return;
+          const perPixel = 180 / Math.PI / radius.current;
+          turn(event.movementX * perPixel, event.movementY * perPixel);
+        }}
+        onKeyDown={(event) => {
+          const step = TURN[event.key];
+          if (!step) return;
+          event.preventDefault();
+          turn(...step);
+        }}
+      />
+      <div class="globe-buttons">
+        <button type="button" aria-label="Nearer" onClick={() => scale(1.5)}>
+          +
+        </button>
+        <button type="button" aria-label="Farther" onClick={() => scale(1 / 1.5)}>
+          −
+        </button>
+        <button
+          type="button"
+          onClick={() => {
+            turned.current = null;
+            zoom.current = 1;
+            redraw.current();
+          }}
+        >
+          Centre
+        </button>
+      </div>
+    </div>
+  );
+}
+
+/** What the colours of the track mean. */
+function Legend({ run }: { run: Run }) {
+  const [low, high] = extent(run.flight.columns.altitude ?? []);
+  return (
+    <span class="legend quiet">
+      {number(low / 1e3, 3)} km
+      <span class="ramp">
+        {Array.from({ length: 16 }, (_, index) => (
+          <span key={index} style={{ background: ramp(index / 15) }} />
+        ))}
+      </span>
+      {number(high / 1e3, 3)} km
+    </span>
+  );
+}
+
+/** The marked places, to copy. */
+function Places({ run }: { run: Run }) {
+  const said = useSignal('');
+  const { flight } = run;
+  const rows = flight.columns.time;
+  return (
+    <div class="places">
+      <ul>
+        {flight.marks.filter(isPlaced).map((mark) => {
+          const place = written(
+            mark.kind === 'end' ? [flight.final.longitude ?? 0, flight.final.geodetic_latitude ?? 0] : placeAt(flight, mark.time),
+          );
+          const altitude = at(flight, 'altitude', rows[indexBefore(rows, mark.time)] ?? 0);
+          return (
+            <li key={`${mark.kind}${mark.label}${mark.time}`}>
+              <strong>{mark.label}</strong> <code>{place}</code>{' '}
+              <span class="quiet">
+                {number(altitude / 1e3, 4)} km, {number(mark.time, 5)} s
+              </span>{' '}
+              <button
+                type="button"
+                class="small"
+                aria-label={`Copy the place of ${mark.label}`}
+                onClick={() => {
+                  void copied(place).then(() => {
+                    said.value = `Copied: ${place}`;
+                  });
+                }}
+              >
+                Copy
+              </button>
+            </li>
+          );
+        })}
+      </ul>
+      <output class="quiet" aria-live="polite">
+        {said.value}
+      </output>
+    </div>
+  );
 }

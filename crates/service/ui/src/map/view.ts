@@ -1,0 +1,121 @@
+import { type GeoProjection, geoCircle, geoDistance, geoPath } from 'd3-geo';
+import { colour } from '../colours';
+import type { Run } from '../flight';
+import { belowSun, graticule, LAND, placeAt, ramp, stretches } from './geography';
+
+/** What a map shows. */
+export interface Scene {
+  runs: Run[];
+  /** The instant that is looked at, s. */
+  time: number | null;
+  /** When the flight begins, where the case says it. */
+  epoch: Date | null;
+}
+
+/** Draws a scene by a projection: the Earth, the night, the tracks, the marks. */
+export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjection, scene: Scene, step: number): void {
+  const path = geoPath(projection, ctx);
+  const fill = (shape: Parameters<typeof path>[0], style: string) => {
+    ctx.beginPath();
+    path(shape);
+    ctx.fillStyle = style;
+    ctx.fill();
+  };
+  const stroke = (shape: Parameters<typeof path>[0], style: string, width: number) => {
+    ctx.beginPath();
+    path(shape);
+    ctx.strokeStyle = style;
+    ctx.lineWidth = width;
+    ctx.stroke();
+  };
+  ctx.lineJoin = 'round';
+  ctx.lineCap = 'round';
+  fill({ type: 'Sphere' }, colour('sea'));
+  fill(LAND, colour('land'));
+  stroke(graticule(step), colour('line'), 0.6);
+  drawNight(fill, scene);
+  stroke({ type: 'Sphere' }, colour('line-strong'), 1);
+  for (const run of [...scene.runs].reverse()) {
+    const track = stretches(run.flight);
+    if (run.id !== 0) {
+      stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour(`run-${run.colour}`), 1.6);
+      continue;
+    }
+    stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour('surface'), 5);
+    for (const { places, level } of track) stroke({ type: 'LineString', coordinates: places }, ramp(level), 3);
+  }
+  drawMarks(ctx, projection, scene);
+}
+
+/** The half of the Earth on which the sun does not shine. */
+function drawNight(fill: (shape: ReturnType<ReturnType<typeof geoCircle>>, style: string) => void, { epoch, time, runs }: Scene): void {
+  if (!epoch) return;
+  const seconds = time ?? runs[0]?.flight.final.time ?? 0;
+  const [longitude, latitude] = belowSun(new Date(epoch.getTime() + seconds * 1e3));
+  fill(
+    geoCircle()
+      .center([longitude + 180, -latitude])
+      .radius(90)(),
+    'rgb(10 20 50 / 22%)',
+  );
+}
+
+function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { runs, time }: Scene): void {
+  const taken: [number, number][] = [];
+  for (const run of runs) {
+    if (run.id === 0) {
+      for (const mark of run.flight.marks.filter(isPlaced)) {
+        const point = seen(projection, placeAt(run.flight, mark.time));
+        if (!point) continue;
+        dot(ctx, point, 4.5, mark.kind === 'end' ? colour('bad') : colour('surface'), colour('text'));
+        const isFree = taken.every(([x, y]) => Math.abs(x - point[0]) > 90 || Math.abs(y - point[1]) > 16);
+        if (isFree) label(ctx, point, mark.label);
+        taken.push(point);
+      }
+    } else {
+      const point = seen(projection, placeAt(run.flight, run.flight.final.time ?? 0));
+      if (point) dot(ctx, point, 3.5, colour(`run-${run.colour}`), colour('surface'));
+    }
+    const now = time === null ? null : seen(projection, placeAt(run.flight, time));
+    if (now) dot(ctx, now, 5.5, colour(`run-${run.colour}`), colour('surface'));
+  }
+}
+
+/** Marks that have a place of their own: not the peaks, but the highest point. */
+export function isPlaced({ kind, label }: { kind: string; label: string }): boolean {
+  return kind !== 'peak' || label === 'highest point';
+}
+
+/** Where a place is on the screen; null where it is on the far side. */
+function seen(projection: GeoProjection, place: [number, number]): [number, number] | null {
+  const clip = projection.clipAngle();
+  if (clip) {
+    const [lambda, phi] = projection.rotate();
+    if (geoDistance(place, [-lambda, -phi]) > (clip * Math.PI) / 180) return null;
+  }
+  return projection(place);
+}
+
+function dot(ctx: CanvasRenderingContext2D, [x, y]: [number, number], radius: number, inside: string, outside: string): void {
+  ctx.beginPath();
+  ctx.arc(x, y, radius, 0, 2 * Math.PI);
+  ctx.fillStyle = inside;
+  ctx.strokeStyle = outside;
+  ctx.lineWidth = 1.5;
+  ctx.fill();
+  ctx.stroke();
+}
+
+function label(ctx: CanvasRenderingContext2D, [x, y]: [number, number], text: string): void {
+  ctx.font = '12px system-ui, sans-serif';
+  const width = ctx.measureText(text).width;
+  const isRight = x + 10 + width < ctx.canvas.clientWidth;
+  ctx.textAlign = isRight ? 'left' : 'right';
+  ctx.textBaseline = 'middle';
+  ctx.strokeStyle = colour('surface');
+  ctx.lineWidth = 3;
+  const at = isRight ? x + 9 : x - 9;
+  ctx.strokeText(text, at, y);
+  ctx.fillStyle = colour('text');
+  ctx.fillText(text, at, y);
+}
