@@ -32,9 +32,10 @@ $(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
 
 # The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped.
 test: build $(VENV)/ready ## Run all tests
-	cd $(UI) && npm test -- --passWithNoTests
+	cd $(UI) && npm test
 	cargo test --locked --workspace
 	REENTRY=$(TARGET)/release/reentry $(VENV)/bin/python -B -m pytest tests/live
+	cd $(UI) && REENTRY=$(abspath $(TARGET))/release/reentry npm run e2e
 
 check: ui $(VENV)/ready ## Check form, lints, types, documentation, licences of dependencies, and the Dockerfile
 	cd $(UI) && npm run check && npx tsc

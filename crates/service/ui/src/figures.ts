@@ -61,7 +61,7 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
 }
 
 function whereOf(peak: { time: number; altitude: number }): string {
-  return `at ${number(peak.altitude / 1e3, 4)} km, ${number(peak.time, 5)} s`;
+  return `at ${number(peak.altitude / 1e3, 4)} km, ${number(peak.time, 4)} s`;
 }
 
 /** Geodetic latitude and longitude, degrees, as other tools take them. */

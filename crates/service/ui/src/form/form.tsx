@@ -546,7 +546,7 @@ function Command({ label, path, property }: { label: string; path: Path; propert
         ) : (
           <Control field={{ kind: 'number', label, isAngle: true }} path={path} property={property} />
         )}
-        <span class="unit">{unitOf({ isAngle: true })}</span>
+        {!isSchedule && <span class="unit">{unitOf({ isAngle: true })}</span>}
         <Faults path={path} />
       </div>
       <label class="check">

@@ -68,8 +68,9 @@ function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { r
         const point = seen(projection, placeAt(run.flight, mark.time));
         if (!point) continue;
         dot(ctx, point, 4.5, mark.kind === 'end' ? colour('bad') : colour('surface'), colour('text'));
-        const isFree = taken.every(([x, y]) => Math.abs(x - point[0]) > 90 || Math.abs(y - point[1]) > 16);
-        if (isFree) label(ctx, point, mark.label);
+        // A second label near the first goes below its mark, a third is left to the list.
+        const near = taken.filter(([x, y]) => Math.abs(x - point[0]) < 110 && Math.abs(y - point[1]) < 18).length;
+        if (near < 2) label(ctx, [point[0], point[1] + 18 * near], mark.label);
         taken.push(point);
       }
     } else {

@@ -1,0 +1,93 @@
+import type { Browser } from 'playwright-core';
+import { afterAll, beforeAll, expect, it } from 'vitest';
+import { toFragment } from '../../src/link';
+import { example, launch, type Opened, open, type Service, serve } from './browser';
+
+let service: Service;
+let browser: Browser;
+
+beforeAll(async () => {
+  [service, browser] = await Promise.all([serve(), launch()]);
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await service?.stop();
+});
+
+async function on(name: string): Promise<Opened> {
+  return open(browser, `${service.address}/${await toFragment(example(name))}`);
+}
+
+it('every plot and map draws something, and says what', async () => {
+  const { page, complaints } = await on('deorbit');
+  await page.getByLabel(/^World map with the track/).waitFor();
+  const canvases = await page.locator('main canvas').all();
+  expect(canvases.length).toBeGreaterThan(10);
+  for (const canvas of canvases) {
+    await canvas.scrollIntoViewIfNeeded();
+    // Some pixels of several colours: axes, grid, curve.
+    const colours = () =>
+      canvas.evaluate((element) => {
+        const { width, height } = element as HTMLCanvasElement;
+        const bytes = (element as HTMLCanvasElement).getContext('2d')?.getImageData(0, 0, width, height).data ?? [];
+        const found = new Set<number>();
+        for (let at = 0; at < bytes.length; at += 4)
+          if (bytes[at + 3] === 255) found.add(((bytes[at] ?? 0) << 16) | ((bytes[at + 1] ?? 0) << 8) | (bytes[at + 2] ?? 0));
+        return found.size;
+      });
+    await expect.poll(colours).toBeGreaterThan(2);
+  }
+  for (const label of await page.locator('[role="img"]').evaluateAll((all) => all.map((element) => element.getAttribute('aria-label')))) {
+    expect(label?.length).toBeGreaterThan(10);
+    expect(label).not.toContain('NaN');
+  }
+  expect(complaints).toEqual([]);
+  await page.close();
+});
+
+it('the instant is the same in every plot, by pointer and by keyboard', async () => {
+  const { page } = await on('target_2');
+  const plot = page.locator('.plot').first();
+  const box = await plot.boundingBox();
+  if (!box) throw new Error('the plot has no place');
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const read = page.locator('.instant .quiet');
+  await expect.poll(() => read.textContent()).toMatch(/ s · altitude .* km · speed .* m\/s/);
+  expect(await page.locator('.plot-dot:visible').count()).toBeGreaterThan(1);
+  const pointed = await read.textContent();
+  await page.locator('#instant').focus();
+  await page.keyboard.press('ArrowRight');
+  await expect.poll(() => read.textContent()).not.toBe(pointed);
+  await page.keyboard.press('Escape');
+  await expect.poll(() => page.locator('.plot-dot').count()).toBe(0);
+  await page.close();
+});
+
+it('the table has the first and the last row of the flight', async () => {
+  const { page } = await on('target_1');
+  await page.getByText('The same as a table').click();
+  const rows = page.getByRole('region', { name: 'Flight', exact: true }).locator('tbody tr');
+  expect(await rows.first().locator('td').first().textContent()).toBe('0');
+  expect(await rows.last().locator('td').first().textContent()).toBe('23.9377');
+  await page.close();
+});
+
+it('the coordinates of the impact can be copied', async () => {
+  const { page } = await on('target_1');
+  await page.getByRole('button', { name: 'Copy the place of impact' }).click();
+  await page.getByText(/^Copied: /).waitFor();
+  // Jameson 2006, Table 1: the impact, longitude -1.7775 rad, latitude 0.61087 rad.
+  expect(await page.evaluate(() => navigator.clipboard.readText())).toBe('35.00012, -101.84333');
+  await page.close();
+});
+
+it('the validation table says that every reference check passes', async () => {
+  const { page } = await on('target_1');
+  await page.getByRole('button', { name: 'Validation' }).click();
+  await page.getByText('Every reference check passes.').waitFor();
+  expect(await page.getByRole('dialog').locator('tbody tr').count()).toBeGreaterThan(100);
+  await page.keyboard.press('Escape');
+  await expect.poll(() => page.getByRole('dialog').count()).toBe(0);
+  await page.close();
+});

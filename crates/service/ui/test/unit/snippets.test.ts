@@ -1,0 +1,35 @@
+import { execFileSync } from 'node:child_process';
+import { beforeAll, expect, it, vi } from 'vitest';
+import type { Case } from '../../src/api';
+import { asCurl, asJson, asPython } from '../../src/snippets';
+
+const TREE = {
+  name: 'Bob\'s "Ω" \\ case $HOME `x`',
+  vehicle: { mass: 1e-7 },
+  echo: true,
+  verify: false,
+  output: { times: [0, 1.5] },
+  events: [{ when: { quantity: 'mach' } }],
+} as unknown as Case;
+
+beforeAll(() => {
+  vi.stubGlobal('document', { baseURI: 'http://localhost:8080/' });
+});
+
+it('JSON is the case', () => {
+  expect(JSON.parse(asJson(TREE))).toEqual(TREE);
+});
+
+it('a shell gives curl the case as it is', () => {
+  const script = asCurl(TREE).replace(/^curl /, 'show() { printf \'%s\\n\' "$1" "$5"; }; show ');
+  const [address, ...body] = execFileSync('sh', ['-c', script], { encoding: 'utf8' }).split('\n');
+  expect(address).toBe('http://localhost:8080/simulate');
+  expect(JSON.parse(body.join('\n'))).toEqual(TREE);
+});
+
+it('Python reads the case as it is', () => {
+  const program = asPython(TREE);
+  const literal = program.slice(program.indexOf('case = '), program.indexOf('response ='));
+  const written = execFileSync('python3', ['-c', `import json\n${literal}\nprint(json.dumps(case))`], { encoding: 'utf8' });
+  expect(JSON.parse(written)).toEqual(TREE);
+});
