@@ -64,7 +64,9 @@ function flown(): Example[] {
 function checks(): Example[] {
   const file = read('tests/cases/nesc/cases.json');
   const { source: _, ...constants } = file.constants.nasa;
-  return Object.entries(file.cases as Record<string, Tree>).map(([number, check]) => {
+  // By number: an object has `10` before `01`.
+  const cases = Object.entries(file.cases as Record<string, Tree>).sort();
+  return cases.map(([number, check]) => {
     const title = `Check case ${Number(number)}: a sphere ${check.title}`;
     const wind = check.wind === undefined ? {} : { wind: check.wind };
     return {

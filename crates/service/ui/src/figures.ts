@@ -1,4 +1,4 @@
-import { at, type Flight, type Numbers } from './flight';
+import type { Flight, Numbers } from './flight';
 import { type AngleUnit, type Name, QUANTITIES, scaleOf, unitOf } from './quantities';
 
 /** A figure by which a flight is judged. */
@@ -55,13 +55,13 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
     end('speed'),
     end('flight_path_angle'),
     ...peaks,
-    { label: 'Highest point', unit: 'km', value: highest.value / 1e3, note: `at ${number(highest.time)} s` },
+    { label: 'Highest point', unit: 'km', value: highest.value / 1e3, note: `${number(highest.time, 5)} s` },
     ...(final.downrange === undefined ? [] : [{ label: 'Downrange', unit: 'km', value: final.downrange / 1e3 }]),
   ];
 }
 
 function whereOf(peak: { time: number; altitude: number }): string {
-  return `at ${number(peak.altitude / 1e3, 4)} km, ${number(peak.time, 4)} s`;
+  return `${kilometres(peak.altitude, 4)} km, ${number(peak.time, 4)} s`;
 }
 
 /** Geodetic latitude and longitude, degrees, as other tools take them. */
@@ -72,12 +72,17 @@ export function placeOf(row: Numbers): string {
 /** A number to so many digits, without zeros at its end. */
 export function number(value: number, digits = 6): string {
   if (!Number.isFinite(value)) return '–';
+  if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size !== 0 && (size >= 1e9 || size < 1e-4))
-    return Number(value.toPrecision(digits)).toExponential().replace('-', '−').replace('e+', 'e');
+  if (size >= 1e9 || size < 1e-4) return Number(value.toPrecision(digits)).toExponential().replace('-', '−').replace('e+', 'e');
   return Number(value.toPrecision(digits))
     .toLocaleString('en', { maximumFractionDigits: 12, useGrouping: size >= 1e5 })
     .replace('-', '−');
+}
+
+/** A length in km, of metres to the millimetre: a flight ends on the ground and not a rounding above it. */
+export function kilometres(metres: number, digits = 6): string {
+  return number(Math.round(metres * 1e3) / 1e6, digits);
 }
 
 /** A number with its sign. */
@@ -95,9 +100,4 @@ export function endsApart(a: Flight, b: Flight): number {
   const cross = Math.hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
   const dot = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
   return ((((a.final.radius ?? 0) + (b.final.radius ?? 0)) / 2) * Math.atan2(cross, dot)) / 1e3;
-}
-
-/** The altitude, km, at an instant. */
-export function altitudeAt(flight: Flight, time: number): number {
-  return at(flight, 'altitude', time) / 1e3;
 }

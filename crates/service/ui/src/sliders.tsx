@@ -30,7 +30,7 @@ const SLIDERS: Slider[] = [
   ...['speed', 'inertial_speed'].map(
     (name): Slider => ({ label: 'Speed', path: ['initial_state', name], unit: 'm/s', range: around(0.25) }),
   ),
-  { label: 'Eccentricity', path: ['initial_state', 'eccentricity'], unit: '', range: around(0.02) },
+  { label: 'Eccentricity', path: ['initial_state', 'eccentricity'], unit: '', range: (value) => [Math.max(value - 0.02, 0), value + 0.02] },
   { label: 'Bank angle', path: ['control', 'bank_angle'], unit: '°', isAngle: true, range: () => [-180, 180], without: 0 },
   { label: 'Mass', path: ['vehicle', 'mass'], unit: 'kg', range: (value) => [value / 2, value * 2] },
   { label: 'Air density', path: ['density_factor'], unit: '×', range: () => [0.5, 1.5], without: 1 },

@@ -64,7 +64,7 @@ export function Take() {
           type="button"
           onClick={() => saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName()}.case.json`)}
         >
-          Case
+          Case file
         </button>
         <button type="button" onClick={() => print()}>
           Print

@@ -3,7 +3,7 @@ import { type GeoProjection, geoEquirectangular, geoOrthographic } from 'd3-geo'
 import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
-import { number } from '../figures';
+import { kilometres, number } from '../figures';
 import { at, indexBefore, type Run } from '../flight';
 import { current, cursor, draft, runs } from '../store';
 import { extent, middleOf, placeAt, ramp, written } from './geography';
@@ -228,13 +228,13 @@ function Legend({ run }: { run: Run }) {
   const [low, high] = extent(run.flight.columns.altitude ?? []);
   return (
     <span class="legend quiet">
-      {number(low / 1e3, 3)} km
+      {kilometres(low, 3)} km
       <span class="ramp">
         {Array.from({ length: 16 }, (_, index) => (
           <span key={index} style={{ background: ramp(index / 15) }} />
         ))}
       </span>
-      {number(high / 1e3, 3)} km
+      {kilometres(high, 3)} km
     </span>
   );
 }
@@ -256,7 +256,7 @@ function Places({ run }: { run: Run }) {
             <li key={`${mark.kind}${mark.label}${mark.time}`}>
               <strong>{mark.label}</strong> <code>{place}</code>{' '}
               <span class="quiet">
-                {number(altitude / 1e3, 4)} km, {number(mark.time, 5)} s
+                {kilometres(altitude, 4)} km, {number(mark.time, 5)} s
               </span>{' '}
               <button
                 type="button"

@@ -87,7 +87,7 @@ export function rangeOf(lists: number[][]): [number, number] {
       if (value > high) high = value;
     }
   if (low > high) return [0, 1];
-  const margin = high > low ? 0.04 * (high - low) : Math.max(Math.abs(high) * 0.01, 1e-6);
+  const margin = high > low ? 0.04 * (high - low) : Math.abs(high) * 0.01 || 1;
   return [low - margin, high + margin];
 }
 

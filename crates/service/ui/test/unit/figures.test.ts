@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Answer } from '../../src/api';
-import { difference, endsApart, figuresOf, number, placeOf } from '../../src/figures';
+import { difference, endsApart, figuresOf, kilometres, number, placeOf } from '../../src/figures';
 import { at, flightOf, indexBefore } from '../../src/flight';
 
 const peak = (value: number) => ({ value, time: 50, altitude: 40_000 });
@@ -80,7 +80,7 @@ describe('a flight', () => {
     const figure = (unit: 'rad' | 'deg', label: string) => figuresOf(flight, unit).find((candidate) => candidate.label === label);
     expect(figure('deg', 'Flight-path angle at the end')).toMatchObject({ unit: '°', value: expect.closeTo(-90, 10) });
     expect(figure('rad', 'Flight-path angle at the end')).toMatchObject({ unit: 'rad', value: expect.closeTo(-Math.PI / 2, 12) });
-    expect(figure('rad', 'Peak heat flux')).toMatchObject({ unit: 'kW/m²', value: 1500, note: 'at 40 km, 50 s' });
+    expect(figure('rad', 'Peak heat flux')).toMatchObject({ unit: 'kW/m²', value: 1500, note: '40 km, 50 s' });
     expect(figure('rad', 'Peak Mach number')).toBeUndefined();
     expect(placeOf(flight.final)).toBe('28.64789°, -177.61692°');
   });
@@ -103,6 +103,10 @@ it.each([
   [Number.NaN, '–'],
 ])('%d is shown as %s', (value, text) => {
   expect(number(value)).toBe(text);
+});
+
+it('a length in km is to the millimetre', () => {
+  expect([-9.3e-10, 214.1234, 120_000.6].map((metres) => kilometres(metres))).toEqual(['0', '0.214123', '120.001']);
 });
 
 it('a difference has its sign', () => {
