@@ -4,7 +4,7 @@ import { useEffect, useState } from 'preact/hooks';
 import { address, type Case } from './api';
 import { Cards, Computing, Problems, Sensitivities, Warnings } from './cards';
 import { inUnit } from './case';
-import { Compare, Theories } from './compare';
+import { Compare, Pin, Theories } from './compare';
 import { opened, start, take } from './fly';
 import { Form } from './form/form';
 import { Plots } from './plots/plots';
@@ -245,13 +245,16 @@ function FlightView() {
   if (!current.value) return <p class="quiet">{isBusy.value ? 'Flying …' : 'No flight yet.'}</p>;
   return (
     <>
-      <h2 class="title">{current.value.case.name ?? 'Flight'}</h2>
+      <div class="panel-head">
+        <h2 class="title">{current.value.case.name ?? 'Flight'}</h2>
+        <Pin />
+      </div>
       <Cards />
       <Warnings />
       <Take />
       <Plots />
-      {Maps ? <Maps /> : <p class="quiet map-space">The map is loading …</p>}
       <Compare />
+      {Maps ? <Maps /> : <p class="quiet map-space">The map is loading …</p>}
       <Theories />
       <Sensitivities />
       <Computing />

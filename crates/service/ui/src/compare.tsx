@@ -16,31 +16,37 @@ function pin(): void {
   pins.value = [...pins.value, { ...current.value, id: lastId, label: `${current.value.case.name ?? 'Flight'} #${lastId}`, colour }];
 }
 
+/** Keeps the current flight. */
+export function Pin() {
+  return (
+    <button
+      type="button"
+      onClick={pin}
+      disabled={!current.value || pins.value.length >= MOST}
+      title="It stays in the plots and on the map while the case changes"
+    >
+      Pin this flight
+    </button>
+  );
+}
+
 /** The flights side by side, and what sets the pinned ones apart from the current one. */
 export function Compare() {
+  if (pins.value.length === 0) return null;
   return (
     <section class="panel" aria-label="Compare">
       <div class="panel-head">
         <h2>Compare</h2>
-        <button type="button" onClick={pin} disabled={!current.value || pins.value.length >= MOST}>
-          Pin this flight
+        <button
+          type="button"
+          onClick={() => {
+            pins.value = [];
+          }}
+        >
+          Unpin all
         </button>
-        {pins.value.length > 0 && (
-          <button
-            type="button"
-            onClick={() => {
-              pins.value = [];
-            }}
-          >
-            Unpin all
-          </button>
-        )}
       </div>
-      {pins.value.length === 0 ? (
-        <p class="quiet">A pinned flight stays in the plots and on the map while the case changes; a table then shows the differences.</p>
-      ) : (
-        <Differences />
-      )}
+      <Differences />
     </section>
   );
 }

@@ -44,7 +44,7 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
         label: name === 'heat_load' ? title : `Peak ${title === 'Mach number' ? title : title.toLowerCase()}`,
         unit,
         value: peak.value * scale,
-        note: whereOf(peak),
+        ...(name === 'heat_load' ? {} : { note: whereOf(peak) }),
       },
     ];
   });

@@ -58,7 +58,7 @@ function Checks({ validation }: { validation: Schemas['Validation'] }) {
                   {check.unit && `, ${check.unit}`}
                 </td>
                 {[check.expected, check.got, check.difference, check.allowed].map((value, index) => (
-                  <td key={index}>{number(value ?? Number.NaN, index < 2 ? 8 : 3)}</td>
+                  <td key={index}>{number(value ?? Number.NaN, index < 2 && check.expected !== 0 ? 8 : 3)}</td>
                 ))}
                 <td>{check.passed === null ? 'plausibility' : check.passed ? 'yes' : 'no'}</td>
               </tr>

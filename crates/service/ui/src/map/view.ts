@@ -64,7 +64,8 @@ function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { r
   const taken: [number, number][] = [];
   for (const run of runs) {
     if (run.id === 0) {
-      for (const mark of run.flight.marks.filter(isPlaced)) {
+      // The end first: where labels are in each other's way, it has its own.
+      for (const mark of run.flight.marks.filter(isPlaced).reverse()) {
         const point = seen(projection, placeAt(run.flight, mark.time));
         if (!point) continue;
         dot(ctx, point, 4.5, mark.kind === 'end' ? colour('bad') : colour('surface'), colour('text'));
