@@ -1,7 +1,7 @@
 import { useSignal } from '@preact/signals';
 import { number } from '../figures';
 import type { Flight } from '../flight';
-import { type Name, QUANTITIES } from '../quantities';
+import { type Name, QUANTITIES, unitOf } from '../quantities';
 import { Scroll } from '../scroll';
 import { angleUnit, current, cursor, runs } from '../store';
 import { type Axes, addable, axesOf, curveOf, type Layout, picked, plotted, titleOf, valueAt } from './curves';
@@ -146,10 +146,7 @@ function Instant({ flight }: { flight: Flight }) {
           ? 'point at a plot to read it; drag to zoom'
           : [
               `${number(time, 5)} s`,
-              ...read.map(
-                (name) =>
-                  `${QUANTITIES[name].label.toLowerCase()} ${number(valueAt(run, name, time, unit), 5)} ${titleOf(name, unit).split(', ').at(-1)}`,
-              ),
+              ...read.map((name) => `${QUANTITIES[name].label} ${number(valueAt(run, name, time, unit), 5)} ${unitOf(name, unit)}`),
             ].join(' · ')}
       </span>
     </div>

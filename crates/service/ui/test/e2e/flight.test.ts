@@ -53,7 +53,7 @@ it('the instant is the same in every plot, by pointer and by keyboard', async ()
   if (!box) throw new Error('the plot has no place');
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   const read = page.locator('.instant .quiet');
-  await expect.poll(() => read.textContent()).toMatch(/ s · altitude .* km · speed .* m\/s/);
+  await expect.poll(() => read.textContent()).toMatch(/ s · Altitude .* km · Speed .* m\/s/);
   expect(await page.locator('.plot-dot:visible').count()).toBeGreaterThan(1);
   const pointed = await read.textContent();
   await page.locator('#instant').focus();
