@@ -153,14 +153,31 @@ function Header() {
   );
 }
 
+/** What was remembered of an earlier visit; nothing where the browser keeps nothing. */
+function remembered(name: string): string | null {
+  try {
+    return localStorage.getItem(name);
+  } catch {
+    return null;
+  }
+}
+
+function remember(name: string, value: string): void {
+  try {
+    localStorage.setItem(name, value);
+  } catch {
+    // Then it holds for this visit.
+  }
+}
+
 const THEMES = ['auto', 'light', 'dark'] as const;
 
 /** Light, dark, or as the reader's system has it. */
 function Theme() {
-  const theme = useSignal<string>(localStorage.getItem('theme') ?? 'auto');
+  const theme = useSignal<string>(remembered('theme') ?? 'auto');
   useEffect(() => {
     document.documentElement.dataset.theme = theme.value;
-    localStorage.setItem('theme', theme.value);
+    remember('theme', theme.value);
   }, [theme.value]);
   return (
     <select

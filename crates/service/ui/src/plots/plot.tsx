@@ -274,7 +274,8 @@ class View {
   /** Looks at the instant of the current flight that is nearest to the pointer. */
   private look(event: PointerEvent): void {
     const run = this.shown.find(({ id }) => id === 0);
-    if (!run || event.buttons !== 0) return;
+    // A mouse that is pressed draws the box to zoom into.
+    if (!run || (event.buttons !== 0 && event.pointerType === 'mouse')) return;
     const box = this.plot.over.getBoundingClientRect();
     const { x, y } = curveOf(run.flight, this.axes, this.unit);
     const points = { length: x.length, at: (index: number) => this.position(x[index] as number, y[index] as number, false) };

@@ -101,7 +101,7 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
   return (
     <div class={isLarge ? 'plot-card large' : 'plot-card'}>
       <div class="plot-head">
-        <h3>{titleOf(axes.y, unit)}</h3>
+        <h3>{isLarge ? `${titleOf(axes.y, unit)}, against speed` : titleOf(axes.y, unit)}</h3>
         {onRemove && (
           <button type="button" class="small" onClick={onRemove} aria-label={`Remove the plot of ${QUANTITIES[axes.y].label}`}>
             ×
