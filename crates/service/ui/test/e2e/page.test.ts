@@ -109,6 +109,35 @@ describe('a form', () => {
     await page.close();
   });
 
+  it('shows the case as it is now, whatever an earlier answer says that comes late', async () => {
+    const { page } = await on(CAPSULE);
+    const steeper = { ...CAPSULE, initial_state: { ...CAPSULE.initial_state, flight_path_angle: -4 } } as Case;
+    const time = new Map(await expected(steeper)).get('Time') as string;
+    await page.route('**/simulate', async (route) => {
+      if (route.request().postDataJSON().initial_state.flight_path_angle === -6) await new Promise((resolve) => setTimeout(resolve, 500));
+      await route.continue().catch(() => {});
+    });
+    const angle = page.locator('#field\\/initial_state\\/flight_path_angle');
+    await angle.fill('-6');
+    await page.waitForTimeout(100);
+    await angle.fill('-4');
+    await shows(page, 'Time', time);
+    await page.waitForTimeout(700);
+    expect(await figure(page, 'Time')).toBe(time);
+    await page.close();
+  });
+
+  it('says that the service does not answer, and flies again once it does', async () => {
+    const { page } = await on(CAPSULE);
+    await page.route('**/simulate', (route) => route.abort());
+    await page.locator('#field\\/vehicle\\/mass').fill('6000');
+    await page.getByText('The service does not answer. Is it running?').waitFor();
+    await page.unroute('**/simulate');
+    await page.locator('#field\\/vehicle\\/mass').fill('6001');
+    await expect.poll(() => page.getByText('The service does not answer. Is it running?').count()).toBe(0);
+    await page.close();
+  });
+
   it.each([
     ['atmosphere', 'Atmosphere and wind', 'Atmosphere', ['us76', 'vacuum', 'exponential', 'layered_exponential']],
     ['planet gravity', 'Planet', 'Gravity', ['zonal', 'inverse_square']],
