@@ -65,6 +65,7 @@ export function Plots() {
         >
           Reset zoom
         </button>
+        <span class="quiet">△ peak · □ event · ● end</span>
       </div>
       <Instant flight={flight} />
       <div class="plot-grid">
