@@ -1,10 +1,10 @@
 import { computed, effect, useSignal } from '@preact/signals';
-import { type GeoProjection, geoEquirectangular, geoOrthographic } from 'd3-geo';
+import { type GeoProjection, geoAzimuthalEquidistant, geoEquirectangular, geoOrthographic } from 'd3-geo';
 import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
 import { kilometres, number } from '../figures';
-import { at, indexBefore, type Run } from '../flight';
+import { at, type Run } from '../flight';
 import { current, cursor, draft, runs } from '../store';
 import { extent, middleOf, placeAt, ramp, written } from './geography';
 import { drawScene, isPlaced, type Scene } from './view';
@@ -97,10 +97,12 @@ function World({ isClose }: { isClose: boolean }) {
   const { canvas } = useCanvas(
     (ctx, width, height, shown) => {
       const flight = shown.runs[0]?.flight;
-      const near = geoEquirectangular();
+      // Around the middle of the track, where a pole is a place like others.
+      const near = isClose ? geoAzimuthalEquidistant() : geoEquirectangular();
       if (isClose && flight) {
         const places = flight.columns.time.map((time) => placeAt(flight, time));
-        near.rotate([-middleOf(flight)[0], 0]);
+        const [longitude, latitude] = middleOf(flight);
+        near.rotate([-longitude, -latitude]);
         const margin = 40;
         near.fitExtent(
           [
@@ -112,7 +114,7 @@ function World({ isClose }: { isClose: boolean }) {
       } else near.fitSize([width, height], { type: 'Sphere' });
       projection.current = near;
       const degrees = width / ((near.scale() * Math.PI) / 180);
-      drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : 2);
+      drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : degrees > 10 ? 2 : 0.5);
     },
     [isClose],
   );
@@ -243,7 +245,6 @@ function Legend({ run }: { run: Run }) {
 function Places({ run }: { run: Run }) {
   const said = useSignal('');
   const { flight } = run;
-  const rows = flight.columns.time;
   return (
     <div class="places">
       <ul>
@@ -251,7 +252,7 @@ function Places({ run }: { run: Run }) {
           const place = written(
             mark.kind === 'end' ? [flight.final.longitude ?? 0, flight.final.geodetic_latitude ?? 0] : placeAt(flight, mark.time),
           );
-          const altitude = at(flight, 'altitude', rows[indexBefore(rows, mark.time)] ?? 0);
+          const altitude = at(flight, 'altitude', mark.time);
           return (
             <li key={`${mark.kind}${mark.label}${mark.time}`}>
               <strong>{mark.label}</strong> <code>{place}</code>{' '}

@@ -64,16 +64,16 @@ function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { r
   const taken: [number, number][] = [];
   for (const run of runs) {
     if (run.id === 0) {
-      // The end first: where labels are in each other's way, it has its own.
-      for (const mark of run.flight.marks.filter(isPlaced).reverse()) {
-        const point = seen(projection, placeAt(run.flight, mark.time));
+      const places = run.flight.marks.filter(isPlaced).map((mark) => ({ mark, point: seen(projection, placeAt(run.flight, mark.time)) }));
+      // Of labels in each other's way the end has its own, a second goes below its mark, a third is left to the list.
+      for (const { mark, point } of [...places].reverse()) {
         if (!point) continue;
-        dot(ctx, point, 4.5, mark.kind === 'end' ? colour('bad') : colour('surface'), colour('text'));
-        // A second label near the first goes below its mark, a third is left to the list.
         const near = taken.filter(([x, y]) => Math.abs(x - point[0]) < 110 && Math.abs(y - point[1]) < 18).length;
         if (near < 2) label(ctx, [point[0], point[1] + 18 * near], mark.label);
         taken.push(point);
       }
+      for (const { mark, point } of places)
+        if (point) dot(ctx, point, 4.5, mark.kind === 'end' ? colour('bad') : colour('surface'), colour('text'));
     } else {
       const point = seen(projection, placeAt(run.flight, run.flight.final.time ?? 0));
       if (point) dot(ctx, point, 3.5, colour(`run-${run.colour}`), colour('surface'));
