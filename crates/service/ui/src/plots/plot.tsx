@@ -130,7 +130,6 @@ class View {
     this.sizes = new ResizeObserver(() => {
       if (box.clientWidth > 0 && box.clientWidth !== this.plot.width) {
         this.plot.setSize({ width: box.clientWidth, height });
-        this.point(cursor.peek());
       }
     });
     this.sizes.observe(box);
@@ -193,7 +192,6 @@ class View {
     if (predicted) this.lines.push({ ...predicted, colour: colour('text'), width: 1.6, isDashed: true });
     if (this.isZoomed) this.plot.redraw();
     else this.fit();
-    this.point(cursor.peek());
   }
 
   private fit(): void {
@@ -221,6 +219,8 @@ class View {
     const run = this.shown.find(({ id }) => id === 0);
     if (run) for (const mark of run.flight.marks) this.drawMark(ctx, run, mark);
     ctx.restore();
+    // Where the curves went, by a zoom or another width, the dots go too.
+    this.point(cursor.peek());
   }
 
   private drawLine(ctx: CanvasRenderingContext2D, { x, y, colour: stroke, width, isDashed }: Line): void {

@@ -64,6 +64,28 @@ it('the instant is the same in every plot, by pointer and by keyboard', async ()
   await page.close();
 });
 
+it('the dots stay on the curves where a plot is zoomed', async () => {
+  const { page } = await on('target_2');
+  const plot = page.locator('.plot .u-over').first();
+  const box = await plot.boundingBox();
+  if (!box) throw new Error('the plot has no place');
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  const dot = page.locator('.plot-dot').first();
+  await dot.waitFor();
+  const place = () => dot.evaluate((element) => (element as HTMLElement).style.transform);
+  const before = await place();
+  const [at] = await dot.evaluateAll((all) => all.map((element) => element.getBoundingClientRect().toJSON()));
+  await page.mouse.move(at.x - 60, at.y - 40);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 120, at.y + 60, { steps: 4 });
+  await page.mouse.up();
+  await expect.poll(place).not.toBe(before);
+  await page.getByRole('button', { name: 'Reset zoom' }).click();
+  await expect.poll(() => page.locator('.plot-dot').first().isVisible()).toBe(true);
+  await page.close();
+});
+
 it('the table has the first and the last row of the flight', async () => {
   const { page } = await on('target_1');
   await page.getByText('The same as a table').click();

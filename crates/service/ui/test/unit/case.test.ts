@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Case } from '../../src/api';
 import { get, inUnit, pointer, set, tidied, typed } from '../../src/case';
+import { type Field, type Fields, SECTIONS } from '../../src/form/fields';
 import { parsed, written } from '../../src/form/inputs';
 
 describe('a path', () => {
@@ -103,6 +104,25 @@ describe('angles in another unit', () => {
         ],
       },
     });
+  });
+
+  it('are the fields that the form shows as angles, and no others', () => {
+    const found: [string, boolean][] = [];
+    const walk = (fields: Fields) => {
+      for (const [name, field] of Object.entries(fields)) visit(name, field);
+    };
+    const visit = (name: string, field: Field) => {
+      if (field.kind === 'group') walk(field.fields);
+      else if (field.kind === 'variant') for (const kind of Object.values(field.kinds)) walk(kind.fields);
+      else if (field.kind === 'list') visit(name, field.item);
+      else if (field.kind === 'command') found.push([name, true]);
+      else if (['number', 'numbers', 'column'].includes(field.kind)) found.push([name, 'isAngle' in field && field.isAngle === true]);
+    };
+    walk(SECTIONS);
+    expect(found.length).toBeGreaterThan(50);
+    const turned = (name: string) =>
+      JSON.stringify(inUnit({ angle_unit: 'deg', part: { [name]: 180 } } as unknown as Case, 'rad')).includes('3.14');
+    expect(found.filter(([name, isAngle]) => turned(name) !== isAngle)).toEqual([]);
   });
 
   it('come back to what they were', () => {
