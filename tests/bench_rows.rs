@@ -6,6 +6,7 @@
 
 use reentry::trajectory::Sampling;
 use reentry::{Scenario, simulate};
+use reentry_service::wire::columns::Columns;
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_service::wire::trajectory::{Extras, SimulateResponse};
@@ -28,7 +29,7 @@ fn line(name: &str) -> String {
     let (scenario, response) = answered(name);
     let flight = simulate(&scenario, &false.into()).unwrap();
     let trajectory = response.trajectory.as_ref().unwrap();
-    let csv = String::from_utf8(trajectory.to_csv().unwrap()).unwrap();
+    let csv = String::from_utf8(as_csv(trajectory)).unwrap();
     let cells = csv.lines().skip(1).flat_map(|line| line.split(','));
     let numbers: Vec<f64> = cells.map(|x| x.parse().unwrap()).collect();
     let columns = csv.lines().next().unwrap().split(',').count();
@@ -38,7 +39,7 @@ fn line(name: &str) -> String {
         [
             &mut timed(|| flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap())),
             &mut timed(|| serde_json::to_vec(&response).unwrap()),
-            &mut timed(|| trajectory.to_csv().unwrap()),
+            &mut timed(|| as_csv(trajectory)),
             &mut timed(|| serde_json::to_vec(&numbers).unwrap()),
         ],
     );
@@ -56,4 +57,11 @@ fn answered(name: &str) -> (Scenario, SimulateResponse) {
     let flight = simulate(&scenario, &false.into()).unwrap();
     let points = flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap());
     (scenario, SimulateResponse::new(job, &flight, Some(points), Extras::default(), 0.0))
+}
+
+/// The rows as CSV.
+fn as_csv(trajectory: &Columns) -> Vec<u8> {
+    let mut csv = Vec::new();
+    trajectory.write_csv(&mut csv).unwrap();
+    csv
 }

@@ -20,15 +20,16 @@ use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use reentry_service::config::{Config, LogFormat};
+use reentry_service::answer;
+use reentry_service::config::Config;
 use reentry_service::endpoints::health;
 use reentry_service::error::ApiError;
 use reentry_service::extract::Payload;
 use reentry_service::format::Format;
-use reentry_service::router::layered;
+use reentry_service::router::surrounded;
 use reentry_service::state::AppState;
+use reentry_service::telemetry::Log;
 use reentry_service::wire::json;
-use reentry_service::{answer, telemetry};
 use reentry_tests::cases::thesis_cases;
 use serde_json::{Value, json};
 use tokio::net::TcpStream;
@@ -328,10 +329,11 @@ impl Drop for Program {
 /// `/simulate` and `/health/live` of the service, with all that surrounds them, but for the pool.
 #[tokio::main]
 async fn serve_inline(address: &str) -> io::Result<()> {
-    telemetry::start(LogFormat::Text);
+    let config = Config::default();
+    let log = Log::start(&config);
     let routes = Router::new().route("/simulate", post(simulate_inline)).route("/health/live", get(health::live));
     let listener = tokio::net::TcpListener::bind(address).await?;
-    axum::serve(listener, layered(routes, AppState::new(Config::default())?)).await
+    axum::serve(listener, surrounded(routes, AppState::new(config, log.lost_lines())?)).await
 }
 
 /// The handler of `/simulate`, but for the pool.
@@ -342,6 +344,6 @@ async fn simulate_inline(
 ) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json, Format::Csv])?;
     let interrupt = AtomicBool::new(false);
-    let body = answer::simulate(json::parse(&body)?, format, app.config.row_limit, &interrupt)?;
+    let body = answer::simulate(json::parse(&body)?, format, app.config.row_limit, &interrupt)?.body;
     Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
 }

@@ -1,11 +1,15 @@
 //! The service, called as a function: the whole router, no socket.
 
+use std::sync::Arc;
+
 use axum::Router;
 use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode, header};
 use http_body_util::BodyExt;
+use reentry_service::compute::Compute;
 use reentry_service::config::Config;
 use reentry_service::state::AppState;
+use reentry_service::telemetry::LostLines;
 use serde_json::Value;
 use tower::ServiceExt;
 
@@ -38,7 +42,9 @@ impl Service {
     /// When the system gives no thread.
     #[expect(clippy::expect_used, reason = "a test that has no threads cannot go on")]
     pub fn with(config: Config) -> Self {
-        Self { router: reentry_service::app(AppState::new(config).expect("threads for the workers")) }
+        Self {
+            router: reentry_service::app(AppState::new(config, LostLines::default()).expect("threads for the workers")),
+        }
     }
 
     /// Sends any request.
@@ -77,6 +83,15 @@ impl Service {
     pub async fn get(&self, path: &str) -> Answer {
         self.send(Request::builder().uri(path).body(Body::empty()).expect("a request")).await
     }
+}
+
+/// A pool of workers by itself.
+///
+/// # Panics
+/// When the system gives no thread.
+#[expect(clippy::expect_used, reason = "a test that has no threads cannot go on")]
+pub fn pool(config: Config) -> Arc<Compute> {
+    AppState::new(config, LostLines::default()).expect("threads for the workers").compute
 }
 
 impl Default for Service {

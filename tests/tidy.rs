@@ -19,12 +19,13 @@ const CORE: [&[&str]; 11] = [
 ];
 
 /// The levels of the service.
-const SERVICE: [&[&str]; 9] = [
-    &["wire", "config", "middleware"],
-    &["error", "telemetry"],
-    &["compute", "embedded", "format", "openapi"],
-    &["answer", "state"],
-    &["extract", "validation"],
+const SERVICE: [&[&str]; 10] = [
+    &["wire", "config", "memory", "metrics", "coding", "telemetry"],
+    &["error", "connection", "client"],
+    &["compute", "embedded", "format", "openapi", "rate"],
+    &["state"],
+    &["middleware", "answer"],
+    &["extract", "validation", "reply"],
     &["endpoints"],
     &["router"],
     &["serve"],

@@ -9,7 +9,7 @@ use axum::http::{Method, Request, StatusCode, header};
 use reentry_service::compute::Compute;
 use reentry_service::config::Config;
 use reentry_service::error::ApiError;
-use reentry_tests::service::{Answer, Service};
+use reentry_tests::service::{Answer, Service, pool};
 use serde_json::{Value, json};
 use tokio::task::yield_now;
 
@@ -196,7 +196,7 @@ async fn one_batch_too_many_is_refused_and_singles_are_answered() {
 }
 
 fn compute(workers: usize, batches: usize, deadline: Duration) -> Arc<Compute> {
-    Arc::new(Compute::new(workers, 8, batches, deadline).unwrap())
+    pool(Config { workers, queue: 8, batches, deadline, ..Config::default() })
 }
 
 type Job = Box<dyn FnOnce(&AtomicBool) -> Result<usize, ApiError> + Send>;
@@ -215,17 +215,17 @@ fn counted(count: &Arc<AtomicUsize>) -> Job {
 async fn batches_leave_a_worker_to_single_jobs() {
     // Nobody waits longer than this for a worker that never comes.
     let compute = compute(2, 8, Duration::from_secs(20));
-    let batch = || compute.run_batch(vec![endless_job(), endless_job()], LONG).unwrap();
+    let batch = || compute.run_batch("/simulate/batch", vec![endless_job(), endless_job()], LONG).unwrap();
     let mut batches = [batch(), batch(), batch(), batch()];
     for _ in 0..100 {
-        assert!(compute.run(|_| Ok(())).await.is_ok());
+        assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
     }
     assert!(batches.iter_mut().all(|batch| batch.try_recv().is_err()), "a batch was finished");
 }
 
 #[tokio::test]
 async fn with_one_worker_single_jobs_wait_for_one_case_of_a_batch() {
-    let compute = Arc::new(Compute::new(1, 0, 1, LONG).unwrap());
+    let compute = pool(Config { workers: 1, queue: 0, batches: 1, deadline: LONG, ..Config::default() });
     let order = Arc::new(Mutex::new(Vec::new()));
     let queued = Arc::new(AtomicBool::new(false));
     let note = |what: &'static str| {
@@ -238,13 +238,13 @@ async fn with_one_worker_single_jobs_wait_for_one_case_of_a_batch() {
             Ok(())
         }
     };
-    let mut batch = compute.run_batch(vec![note("case"); 3], LONG).unwrap();
+    let mut batch = compute.run_batch("/simulate/batch", vec![note("case"); 3], LONG).unwrap();
     // The first case is with the worker before the single job comes.
     yield_now().await;
     yield_now().await;
     let single = {
         let (compute, job) = (Arc::clone(&compute), note("single"));
-        tokio::spawn(async move { compute.run(job).await })
+        tokio::spawn(async move { compute.run("/simulate", job).await })
     };
     while compute.has_room() {
         yield_now().await;
@@ -259,7 +259,7 @@ async fn with_one_worker_single_jobs_wait_for_one_case_of_a_batch() {
 async fn nothing_is_computed_far_ahead_of_who_reads() {
     let compute = compute(1, 1, LONG);
     let count = Arc::new(AtomicUsize::new(0));
-    let mut batch = compute.run_batch((0..100).map(|_| counted(&count)).collect(), LONG).unwrap();
+    let mut batch = compute.run_batch("/simulate/batch", (0..100).map(|_| counted(&count)).collect(), LONG).unwrap();
     for taken in 0..100 {
         // One result waits in the channel, and one before it.
         let ahead = (taken + 2).min(100);
@@ -267,7 +267,7 @@ async fn nothing_is_computed_far_ahead_of_who_reads() {
             yield_now().await;
         }
         for _ in 0..3 {
-            assert!(compute.run(|_| Ok(())).await.is_ok(), "the worker is not free");
+            assert!(compute.run("/simulate", |_| Ok(())).await.is_ok(), "the worker is not free");
         }
         assert_eq!(count.load(Ordering::SeqCst), ahead);
         assert_eq!(batch.recv().await.unwrap().unwrap(), taken);
@@ -279,9 +279,9 @@ async fn nothing_is_computed_far_ahead_of_who_reads() {
 async fn a_batch_that_nobody_reads_ends_early_and_gives_its_place_back() {
     let compute = compute(1, 1, Duration::from_millis(50));
     let count = Arc::new(AtomicUsize::new(0));
-    let mut unread = compute.run_batch((0..100).map(|_| counted(&count)).collect(), LONG).unwrap();
+    let mut unread = compute.run_batch("/simulate/batch", (0..100).map(|_| counted(&count)).collect(), LONG).unwrap();
     let jobs = || (0..3).map(|_| counted(&count)).collect();
-    free_again(|| async { compute.run_batch(jobs(), LONG).is_ok() }).await;
+    free_again(|| async { compute.run_batch("/simulate/batch", jobs(), LONG).is_ok() }).await;
     assert!(unread.recv().await.is_some());
     assert!(unread.recv().await.is_none());
 }
@@ -290,11 +290,11 @@ async fn a_batch_that_nobody_reads_ends_early_and_gives_its_place_back() {
 async fn a_batch_whose_client_goes_away_is_given_up() {
     let compute = compute(1, 1, LONG);
     let count = Arc::new(AtomicUsize::new(0));
-    let batch = compute.run_batch(vec![endless_job(), counted(&count)], LONG).unwrap();
-    assert!(matches!(compute.run_batch(vec![endless_job()], LONG), Err(ApiError::Busy)));
+    let batch = compute.run_batch("/simulate/batch", vec![endless_job(), counted(&count)], LONG).unwrap();
+    assert!(matches!(compute.run_batch("/simulate/batch", vec![endless_job()], LONG), Err(ApiError::Busy)));
     drop(batch);
-    free_again(|| async { compute.run_batch(vec![endless_job()], LONG).is_ok() }).await;
-    assert!(compute.run(|_| Ok(())).await.is_ok());
+    free_again(|| async { compute.run_batch("/simulate/batch", vec![endless_job()], LONG).is_ok() }).await;
+    assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
     assert_eq!(count.load(Ordering::SeqCst), 0);
 }
 
@@ -302,7 +302,7 @@ async fn a_batch_whose_client_goes_away_is_given_up() {
 async fn a_case_beyond_the_time_of_a_single_job_fails_alone() {
     let compute = compute(1, 1, Duration::from_secs(1));
     let count = Arc::new(AtomicUsize::new(7));
-    let mut batch = compute.run_batch(vec![endless_job(), counted(&count)], LONG).unwrap();
+    let mut batch = compute.run_batch("/simulate/batch", vec![endless_job(), counted(&count)], LONG).unwrap();
     let first = batch.recv().await.unwrap();
     assert!(matches!(first, Err(ApiError::DeadlineExceeded { seconds: 1.0 })), "{first:?}");
     assert_eq!(batch.recv().await.unwrap().unwrap(), 7);
@@ -313,13 +313,13 @@ async fn after_the_time_of_a_batch_nothing_is_computed_any_more() {
     let compute = compute(1, 1, LONG);
     let count = Arc::new(AtomicUsize::new(0));
     let jobs = vec![counted(&count), endless_job(), counted(&count), counted(&count)];
-    let mut batch = compute.run_batch(jobs, Duration::from_secs(1)).unwrap();
+    let mut batch = compute.run_batch("/simulate/batch", jobs, Duration::from_secs(1)).unwrap();
     assert_eq!(batch.recv().await.unwrap().unwrap(), 0);
     for _ in 0..3 {
         let late = batch.recv().await.unwrap();
         assert!(matches!(late, Err(ApiError::DeadlineExceeded { seconds: 1.0 })), "{late:?}");
         // What is left to say takes no place.
-        assert!(compute.run_batch(Vec::<Job>::new(), LONG).is_ok());
+        assert!(compute.run_batch("/simulate/batch", Vec::<Job>::new(), LONG).is_ok());
     }
     assert!(batch.recv().await.is_none());
     assert_eq!(count.load(Ordering::SeqCst), 1);

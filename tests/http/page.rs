@@ -2,6 +2,7 @@
 
 use axum::body::Body;
 use axum::http::{HeaderMap, HeaderValue, Method, Request, StatusCode, header};
+use reentry_service::coding::Coding;
 use reentry_service::config::Config;
 use reentry_service::embedded::File;
 use reentry_tests::service::{Answer, Service};
@@ -145,12 +146,19 @@ fn the_coding_is_the_one_that_the_client_likes_best() {
             "gzip" => FILE.gzip.unwrap(),
             _ => FILE.plain,
         };
-        assert_eq!(FILE.representation(&request), (coding, bytes), "{accepted}");
+        let (chosen, text) = FILE.representation(&request);
+        assert_eq!((chosen.name(), text), (coding, bytes), "{accepted}");
     }
-    assert_eq!(FILE.representation(&HeaderMap::new()).0, "identity");
-    assert_eq!(FILE.representation(&headers(&[("accept-encoding", "gzip"), ("accept-encoding", "br")])).0, "br");
+    assert_eq!(FILE.representation(&HeaderMap::new()).0, Coding::Identity);
+    assert_eq!(
+        FILE.representation(&headers(&[("accept-encoding", "gzip"), ("accept-encoding", "br")])).0,
+        Coding::Brotli
+    );
     let uncompressed = File { brotli: None, gzip: None, ..FILE };
-    assert_eq!(uncompressed.representation(&headers(&[("accept-encoding", "br, gzip")])), ("identity", FILE.plain));
+    assert_eq!(
+        uncompressed.representation(&headers(&[("accept-encoding", "br, gzip")])),
+        (Coding::Identity, FILE.plain)
+    );
 }
 
 #[test]

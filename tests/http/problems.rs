@@ -8,10 +8,9 @@ use std::time::Duration;
 use axum::body::{Body, Bytes};
 use axum::http::{Method, Request, header};
 use http_body_util::{BodyExt, Full, Limited};
-use reentry_service::compute::Compute;
 use reentry_service::config::Config;
 use reentry_service::error::ApiError;
-use reentry_tests::service::Service;
+use reentry_tests::service::{Service, pool};
 use serde_json::{Value, json};
 
 use super::refusal::{Steady, problem};
@@ -303,24 +302,24 @@ pub(crate) fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
 
 #[tokio::test]
 async fn a_job_is_given_up_at_its_deadline() {
-    let compute = Compute::new(1, 0, 0, Duration::from_millis(20)).unwrap();
-    let result = compute.run(endless).await;
+    let compute = pool(Config { workers: 1, queue: 0, deadline: Duration::from_millis(20), ..Config::default() });
+    let result = compute.run("/simulate", endless).await;
     assert!(matches!(result, Err(ApiError::DeadlineExceeded { .. })), "{result:?}");
     free_again(|| async { compute.has_room() }).await;
-    assert!(compute.run(|_| Ok(())).await.is_ok());
+    assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
 }
 
 #[tokio::test]
 async fn a_job_whose_client_goes_away_is_given_up() {
-    let compute = Arc::new(Compute::new(1, 0, 0, Duration::from_mins(5)).unwrap());
+    let compute = pool(Config { workers: 1, queue: 0, deadline: Duration::from_mins(5), ..Config::default() });
     let client = {
         let compute = Arc::clone(&compute);
-        tokio::spawn(async move { compute.run(endless).await })
+        tokio::spawn(async move { compute.run("/simulate", endless).await })
     };
     while compute.has_room() {
         tokio::task::yield_now().await;
     }
     client.abort();
     free_again(|| async { compute.has_room() }).await;
-    assert!(compute.run(|_| Ok(())).await.is_ok());
+    assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
 }

@@ -371,7 +371,7 @@ impl Trajectory {
     /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
         let legs = &self.flown.legs;
-        let mut following = 0;
+        let mut following = times.first().map_or(0, |first| legs.partition_point(|leg| leg.end_time() <= *first));
         let mut known: Option<(usize, Motion, LegInterpolant)> = None;
         let mut point = |time: f64| {
             while legs.get(following).is_some_and(|leg| leg.end_time() <= time) {

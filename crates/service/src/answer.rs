@@ -1,8 +1,10 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
-use std::sync::atomic::AtomicBool;
+use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use reentry::integrate::Statistics;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{SimulationError, simulate as fly};
 use reentry::trajectory::{FlightPoint, Trajectory};
@@ -11,6 +13,7 @@ use serde_json::Value;
 
 use crate::error::ApiError;
 use crate::format::Format;
+use crate::metrics::Work;
 use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
 use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
@@ -19,26 +22,45 @@ use crate::wire::track::Track;
 use crate::wire::trajectory::{Extras, SimulateResponse};
 use crate::wire::verification::Verification;
 
-/// Flies a case; `interrupt` ends the flight early.
+/// The bytes of an answer, and what it cost.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// In the format that was asked for.
+    pub body: Vec<u8>,
+    /// Of the flight; nothing where none was flown.
+    pub work: Work,
+}
+
+/// Flies a case; `interrupt` ends it early, wherever it is.
 ///
 /// # Errors
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
-pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
     let job = Job::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
     let start = Instant::now();
     let flight = fly(&job.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();
-    let points = rows(&job, &flight, row_limit)?;
+    let points = rows(&job, &flight, row_limit, interrupt)?;
+    let work = work(&flight, points.as_deref());
     let extras = extras(&job, &flight, interrupt)?;
     let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
     let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
-    Ok(match (format, &response.trajectory) {
-        (Format::Csv, Some(rows)) => rows.to_csv()?,
-        (Format::Geojson, Some(rows)) => track(rows)?.to_geojson()?,
-        (Format::Kml, Some(rows)) => track(rows)?.to_kml()?,
-        (Format::Czml, Some(rows)) => track(rows)?.to_czml()?,
-        _ => serde_json::to_vec(&response)?,
-    })
+    let mut out = Written::new(interrupt);
+    let written = match (format, &response.trajectory) {
+        (Format::Csv, Some(rows)) => rows.write_csv(&mut out),
+        (Format::Geojson, Some(rows)) => track(rows)?.write_geojson(&mut out),
+        (Format::Kml, Some(rows)) => track(rows)?.write_kml(&mut out),
+        (Format::Czml, Some(rows)) => track(rows)?.write_czml(&mut out),
+        _ => serde_json::to_writer(&mut out, &response),
+    };
+    Ok(Answer { body: out.whole(written)?, work })
+}
+
+/// What a flight cost, and its rows.
+fn work(flight: &Trajectory, points: Option<&[FlightPoint]>) -> Work {
+    let Statistics { steps, rejected_steps, evaluations } = flight.statistics();
+    let [steps, rejected_steps, evaluations] = [steps, rejected_steps, evaluations].map(|count| count as u64);
+    Work { steps, rejected_steps, evaluations, rows: points.map_or(0, <[_]>::len) as u64 }
 }
 
 fn wanted(format: Format) -> Wanted {
@@ -71,34 +93,99 @@ fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extr
 }
 
 /// The rows for which a job asks.
-fn rows(job: &Job, flight: &Trajectory, limit: usize) -> Result<Option<Vec<FlightPoint>>, ApiError> {
+fn rows(
+    job: &Job,
+    flight: &Trajectory,
+    limit: usize,
+    interrupt: &AtomicBool,
+) -> Result<Option<Vec<FlightPoint>>, ApiError> {
     let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
-    let points = flight.points(&instants);
+    let mut points = Vec::with_capacity(instants.len());
+    for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
+        if interrupt.load(Ordering::Relaxed) {
+            return Err(ApiError::Interrupted);
+        }
+        points.extend(flight.points(instants));
+    }
     match points.iter().find(|point| !point.is_finite()) {
         Some(point) => Err(SimulationError::Overflow { time: point.time }.into()),
         None => Ok(Some(points)),
     }
 }
 
+/// Rows that are evaluated between two looks at the flag: about a millisecond.
+const ROWS_BETWEEN_LOOKS: usize = 2048;
+
 /// Writes a state in every coordinate system.
 ///
 /// # Errors
 /// When the state is not sound.
-pub fn convert(tree: Value) -> Result<Vec<u8>, ApiError> {
-    Ok(serde_json::to_vec(&ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?)?)
+pub fn convert(tree: Value, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
+    let response = ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?;
+    let mut out = Written::new(interrupt);
+    let written = serde_json::to_writer(&mut out, &response);
+    Ok(Answer { body: out.whole(written)?, work: Work::default() })
 }
 
-/// Sets a theory beside a flight; `interrupt` ends the flight early.
+/// Sets a theory beside a flight; `interrupt` ends it early, wherever it is.
 ///
 /// # Errors
 /// When the case is not sound, the theory does not apply, and as [`simulate`] otherwise.
-pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
     let analytic = AnalyticJob::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
     let flight = fly(&analytic.job.scenario, interrupt)?;
-    let points = rows(&analytic.job, &flight, row_limit)?.unwrap_or_default();
+    let points = rows(&analytic.job, &flight, row_limit, interrupt)?.unwrap_or_default();
+    let work = work(&flight, Some(&points));
     let extras = extras(&analytic.job, &flight, interrupt)?;
     let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, comparison, extras);
-    Ok(if format == Format::Csv { response.to_csv()? } else { serde_json::to_vec(&response)? })
+    let mut out = Written::new(interrupt);
+    let written =
+        if format == Format::Csv { response.write_csv(&mut out) } else { serde_json::to_writer(&mut out, &response) };
+    Ok(Answer { body: out.whole(written)?, work })
+}
+
+/// Text that is being written until a flag is raised.
+struct Written<'a> {
+    text: Vec<u8>,
+    interrupt: &'a AtomicBool,
+    /// The length at which the flag is looked at next.
+    look: usize,
+}
+
+/// Bytes that are written between two looks at the flag: less than a millisecond.
+const BYTES_BETWEEN_LOOKS: usize = 1 << 18;
+
+impl<'a> Written<'a> {
+    fn new(interrupt: &'a AtomicBool) -> Self {
+        Self { text: Vec::new(), interrupt, look: BYTES_BETWEEN_LOOKS }
+    }
+
+    /// The text, if it was written to its end: memory can always be written, so that only the flag ends it early.
+    fn whole(self, written: Result<(), serde_json::Error>) -> Result<Vec<u8>, ApiError> {
+        written.map(|()| self.text).map_err(|_| ApiError::Interrupted)
+    }
+}
+
+impl Write for Written<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.write_all(bytes).map(|()| bytes.len())
+    }
+
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.text.extend_from_slice(bytes);
+        if self.text.len() >= self.look {
+            self.look = self.text.len() + BYTES_BETWEEN_LOOKS;
+            if self.interrupt.load(Ordering::Relaxed) {
+                // Not `Interrupted`, after which writers try again.
+                return Err(io::ErrorKind::Other.into());
+            }
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

@@ -33,7 +33,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Run the web service until SIGTERM or SIGINT; every flag can be set by its environment variable as well
-    Serve(Config),
+    Serve(Box<Config>),
     /// Fly a case, or each of a list of cases: the JSON of POST /simulate
     #[command(after_help = [SIMULATE_EXAMPLES, EXIT_CODES].concat())]
     Simulate {
@@ -156,6 +156,9 @@ pub enum Failure {
         /// Why.
         error: io::Error,
     },
+    /// A setting is not sound beside the others, or not at all.
+    #[error("{0}; reentry serve --help tells of all settings")]
+    Setting(String),
     /// The service cannot run, or does not answer.
     #[error(transparent)]
     Service(#[from] io::Error),
@@ -166,10 +169,11 @@ impl Failure {
     pub fn end(&self) -> ExitCode {
         match self {
             Self::Case => {}
-            Self::File { .. } | Self::Service(_) => tell(&format!("reentry: {self}\n")),
+            Self::File { .. } | Self::Setting(_) | Self::Service(_) => tell(&format!("reentry: {self}\n")),
         }
         ExitCode::from(match self {
             Self::Case | Self::Service(_) => 1,
+            Self::Setting(_) => 2,
             Self::File { .. } => 3,
         })
     }
@@ -180,12 +184,12 @@ impl Command {
     ///
     /// # Errors
     /// With what is to be said, unless it has been, and the code with which to end.
-    pub fn run(self, serve: impl FnOnce(Config) -> io::Result<()>) -> Result<(), Failure> {
+    pub fn run(self, serve: impl FnOnce(Config) -> Result<(), Failure>) -> Result<(), Failure> {
         match self {
-            Self::Serve(config) => Ok(serve(config)?),
+            Self::Serve(config) => serve(*config),
             Self::Simulate { cases, format } => cases.run(format, answer::simulate),
             Self::Analytic { cases, format } => cases.run(format, answer::analytic),
-            Self::Convert { states, .. } => states.run(|tree, _, _, _| answer::convert(tree)),
+            Self::Convert { states, .. } => states.run(|tree, _, _, interrupt| answer::convert(tree, interrupt)),
             Self::Validate(validate) => validate.run(),
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;

@@ -15,8 +15,10 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
 use tokio::time::{Instant, timeout};
 use tracing::{Instrument, Span};
 
-use crate::config::processors;
+use crate::config::{Config, processors};
 use crate::error::ApiError;
+use crate::memory::Memory;
+use crate::metrics::Metrics;
 
 /// A runtime of its own whose blocking threads compute; the threads that talk to clients never do.
 #[derive(Debug)]
@@ -29,16 +31,20 @@ pub struct Compute {
     batches: Arc<Semaphore>,
     /// The workers that all batches together may have.
     shared: Arc<Semaphore>,
+    /// What a job may take, its waiting included.
     deadline: Duration,
+    /// Where the answers count that have not been sent.
+    memory: Arc<Memory>,
+    metrics: Arc<Metrics>,
 }
 
 impl Compute {
-    /// A pool of `workers` threads before which `queue` jobs may wait, beside `batches` batches; each job, its waiting included,
-    /// may take the deadline.
+    /// The pool of the settings.
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub fn new(workers: usize, queue: usize, batches: usize, deadline: Duration) -> std::io::Result<Self> {
+    pub fn new(config: &Config, memory: Arc<Memory>, metrics: Arc<Metrics>) -> std::io::Result<Self> {
+        let workers = config.workers();
         let pool = Builder::new_multi_thread()
             .worker_threads(1)
             .max_blocking_threads(workers)
@@ -46,25 +52,27 @@ impl Compute {
             .build()?;
         Ok(Self {
             pool: Some(pool),
-            places: Arc::new(Semaphore::new(workers + queue)),
-            batches: Arc::new(Semaphore::new(batches)),
+            places: Arc::new(Semaphore::new(workers + config.queue)),
+            batches: Arc::new(Semaphore::new(config.batches)),
             shared: Arc::new(Semaphore::new(workers.saturating_sub(1).max(1))),
-            deadline,
+            deadline: config.deadline,
+            memory,
+            metrics,
         })
     }
 
-    /// Runs a job, which is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
+    /// Runs a job of a route, which is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
     ///
     /// # Errors
-    /// The job's own; [`ApiError::Busy`] at once when all places are taken; [`ApiError::DeadlineExceeded`];
+    /// The job's own; [`ApiError::Busy`] at once when all places are taken, or when the memory is full; [`ApiError::DeadlineExceeded`];
     /// [`ApiError::Internal`] when the job panics.
-    pub async fn run<T, F>(&self, job: F) -> Result<T, ApiError>
+    pub async fn run<T, F>(&self, route: &'static str, job: F) -> Result<T, ApiError>
     where
         T: Send + 'static,
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
         let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| ApiError::Busy)?;
-        self.work(place, job).await
+        self.work(route, place, job, self.deadline).await
     }
 
     /// Runs the jobs of a batch one after another and gives their results in order, those that the time does not suffice for
@@ -77,6 +85,7 @@ impl Compute {
     /// [`ApiError::Busy`] when all places for batches are taken.
     pub fn run_batch<T, F>(
         self: &Arc<Self>,
+        route: &'static str,
         jobs: Vec<F>,
         time: Duration,
     ) -> Result<mpsc::Receiver<Result<T, ApiError>>, ApiError>
@@ -92,16 +101,18 @@ impl Compute {
             let mut place = Some(place);
             for job in jobs {
                 let left = time.saturating_sub(start.elapsed());
-                let result = async { if left.is_zero() { None } else { timeout(left, compute.share(job)).await.ok() } };
                 let result = tokio::select! {
                     () = results.closed() => return,
-                    result = result => result,
+                    result = compute.share(route, job, left) => result,
                 };
-                let result = result.unwrap_or_else(|| {
-                    // Nothing more is computed: the place is for another, however slowly the rest is read.
-                    place = None;
-                    Err(ApiError::DeadlineExceeded { seconds: time.as_secs_f64() })
-                });
+                let result = match result {
+                    Err(ApiError::DeadlineExceeded { .. }) if start.elapsed() >= time => {
+                        // Nothing more is computed: the place is for another, however slowly the rest is read.
+                        drop(place.take());
+                        Err(ApiError::DeadlineExceeded { seconds: time.as_secs_f64() })
+                    }
+                    result => result,
+                };
                 if !matches!(timeout(compute.deadline, results.send(result)).await, Ok(Ok(()))) {
                     return;
                 }
@@ -111,37 +122,64 @@ impl Compute {
         Ok(receiver)
     }
 
-    /// Runs a job of a batch, when the other batches leave it a worker.
-    async fn share<T, F>(&self, job: F) -> Result<T, ApiError>
+    /// Runs a job of a batch that has so much time left, when the other batches leave it a worker.
+    ///
+    /// # Errors
+    /// As [`Compute::run`], but that it waits for a place.
+    pub async fn share<T, F>(&self, route: &'static str, job: F, left: Duration) -> Result<T, ApiError>
     where
         T: Send + 'static,
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
-        let worker = Arc::clone(&self.shared).acquire_owned().await.map_err(|_| ApiError::Internal)?;
-        self.work(worker, job).await
+        let start = Instant::now();
+        let out_of_time = || ApiError::DeadlineExceeded { seconds: left.as_secs_f64() };
+        if left.is_zero() {
+            return Err(out_of_time());
+        }
+        let worker = timeout(left, Arc::clone(&self.shared).acquire_owned()).await.map_err(|_| out_of_time())?;
+        let left = left.saturating_sub(start.elapsed());
+        self.work(route, worker.map_err(|_| ApiError::Internal)?, job, left.min(self.deadline)).await
     }
 
-    async fn work<T, F>(&self, place: OwnedSemaphorePermit, job: F) -> Result<T, ApiError>
+    async fn work<T, F>(
+        &self,
+        route: &'static str,
+        place: OwnedSemaphorePermit,
+        job: F,
+        allowed: Duration,
+    ) -> Result<T, ApiError>
     where
         T: Send + 'static,
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
         let pool = self.pool.as_ref().ok_or(ApiError::Internal)?;
-        let caller = Caller(Arc::new(AtomicBool::new(false)));
-        let interrupt = Arc::clone(&caller.0);
+        let caller = Caller(Arc::default());
+        let call = Arc::clone(&caller.0);
+        let (memory, metrics) = (Arc::clone(&self.memory), Arc::clone(&self.metrics));
+        metrics.job_queued();
+        let asked = Instant::now();
         let handle = pool.spawn_blocking(move || {
             // The place is free again when the job has ended, not when its caller has gone.
             let _place = place;
-            if interrupt.load(Ordering::Relaxed) { None } else { Some(job(&interrupt)) }
+            metrics.job_begun(route, asked.elapsed());
+            let running = Running { route, call: &call, metrics: &metrics, start: Instant::now() };
+            if running.is_wanted() {
+                Some(if memory.is_full() { Err(ApiError::Busy) } else { job(&call.interrupt) })
+            } else {
+                None
+            }
         });
-        match timeout(self.deadline, handle).await {
+        match timeout(allowed, handle).await {
             Ok(Ok(Some(result))) => result,
             Ok(Ok(None)) => Err(ApiError::Internal),
             Ok(Err(panic)) => {
                 tracing::error!(%panic, "a job panicked");
                 Err(ApiError::Internal)
             }
-            Err(_) => Err(ApiError::DeadlineExceeded { seconds: self.deadline.as_secs_f64() }),
+            Err(_) => {
+                caller.0.is_late.store(true, Ordering::Relaxed);
+                Err(ApiError::DeadlineExceeded { seconds: self.deadline.as_secs_f64() })
+            }
         }
     }
 
@@ -159,12 +197,45 @@ impl Drop for Compute {
     }
 }
 
+/// What a job and the one who waits for it have in common.
+#[derive(Debug, Default)]
+struct Call {
+    /// Raised when nobody waits any more.
+    interrupt: AtomicBool,
+    /// Whether that is because the time ran out.
+    is_late: AtomicBool,
+}
+
 /// Somebody who waits for a job; the flag is raised when they stop waiting.
-struct Caller(Arc<AtomicBool>);
+struct Caller(Arc<Call>);
 
 impl Drop for Caller {
     fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.interrupt.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A job that a worker has; counted when it is over, by a panic too.
+struct Running<'a> {
+    route: &'static str,
+    call: &'a Call,
+    metrics: &'a Metrics,
+    start: Instant,
+}
+
+impl Running<'_> {
+    fn is_wanted(&self) -> bool {
+        !self.call.interrupt.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Running<'_> {
+    fn drop(&mut self) {
+        self.metrics.job_over(self.route, self.start.elapsed());
+        if !self.is_wanted() {
+            let is_late = self.call.is_late.load(Ordering::Relaxed);
+            self.metrics.job_cancelled(self.route, if is_late { "deadline" } else { "disconnect" });
+        }
     }
 }
 

@@ -1,10 +1,13 @@
 //! The settings, from flags and environment, read once at start.
 
-use std::net::SocketAddr;
-use std::num::NonZeroUsize;
+use std::net::{IpAddr, SocketAddr};
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Duration;
 
+use axum::http::{HeaderValue, Uri};
 use clap::{Args, ValueEnum};
+use ipnet::IpNet;
+use tracing_subscriber::EnvFilter;
 
 /// Settings of `reentry serve`.
 #[derive(Args, Clone, Debug)]
@@ -14,11 +17,11 @@ pub struct Config {
     pub listen: SocketAddr,
 
     /// Threads that compute; 0 takes as many as there are processors
-    #[arg(long, env = "REENTRY_WORKERS", default_value_t = 0)]
+    #[arg(long, env = "REENTRY_WORKERS", default_value_t = 0, value_parser = up_to(1024))]
     pub workers: usize,
 
     /// Requests that may wait for a worker; one more is refused with 503
-    #[arg(long, env = "REENTRY_QUEUE", default_value_t = 64)]
+    #[arg(long, env = "REENTRY_QUEUE", default_value_t = 64, value_parser = up_to(1 << 20))]
     pub queue: usize,
 
     /// Seconds that a job may take, waiting included, before 504 is answered, and that its body may take before 408
@@ -30,7 +33,7 @@ pub struct Config {
     pub body_limit: usize,
 
     /// Batches that may be under way at once; one more is refused with 503
-    #[arg(long, env = "REENTRY_BATCHES", default_value_t = 16)]
+    #[arg(long, env = "REENTRY_BATCHES", default_value_t = 16, value_parser = up_to(1 << 20))]
     pub batches: usize,
 
     /// Seconds that a batch may take in all; 504 is then the answer of the cases that are left
@@ -49,11 +52,51 @@ pub struct Config {
     #[arg(long, env = "REENTRY_COMPRESS_ABOVE", default_value_t = 16_384)]
     pub compress_above: u64,
 
+    /// Bytes that bodies on their way in and answers on their way out may have together; what is begun beyond is refused with 503
+    #[arg(long, env = "REENTRY_MEMORY", default_value_t = 256 << 20)]
+    pub memory: usize,
+
+    /// Connections that may be open at once, as far as the system allows so many files; more wait to be accepted
+    #[arg(long, env = "REENTRY_CONNECTIONS", default_value_t = 16_384, value_parser = at_least_one)]
+    pub connections: usize,
+
+    /// Seconds that a connection may be idle, send the head of a request, or leave an answer untaken before it is closed
+    #[arg(long, env = "REENTRY_IDLE", default_value = "30", value_parser = seconds)]
+    pub idle: Duration,
+
     /// Seconds that requests may go on after SIGTERM or SIGINT
     #[arg(long, env = "REENTRY_GRACE", default_value = "20", value_parser = seconds)]
     pub grace: Duration,
 
-    /// Form of the log lines on standard error; `RUST_LOG` sets their level
+    /// Requests a second that one client may send on average; one more is refused with 429. No limit by default
+    #[arg(long, env = "REENTRY_RATE_LIMIT", value_name = "RATE", value_parser = rate)]
+    pub rate_limit: Option<f64>,
+
+    /// Requests that a client that has been silent may send at once, under a rate limit
+    #[arg(long, env = "REENTRY_RATE_BURST", default_value = "20")]
+    pub rate_burst: NonZeroU32,
+
+    /// Networks of the proxies whose word on the client's address is taken, as `10.0.0.0/8,::1/128`
+    #[arg(long, env = "REENTRY_TRUSTED_PROXIES", value_name = "NETWORKS", value_delimiter = ',', value_parser = network)]
+    pub trusted_proxies: Vec<IpNet>,
+
+    /// Header in which trusted proxies give the client's address
+    #[arg(long, env = "REENTRY_FORWARDED_HEADER", value_enum, default_value_t = ForwardedHeader::XForwardedFor)]
+    pub forwarded_header: ForwardedHeader,
+
+    /// Origins whose pages may ask from a browser, as `https://planner.example`; `*` is all, `none` is none
+    #[arg(long, env = "REENTRY_CORS_ORIGINS", value_name = "ORIGINS", default_value = "*", value_parser = origins)]
+    pub cors_origins: Origins,
+
+    /// Address and port for `GET /metrics`, which the other address then does not answer
+    #[arg(long, env = "REENTRY_METRICS_LISTEN", value_name = "ADDRESS")]
+    pub metrics_listen: Option<SocketAddr>,
+
+    /// What is logged: error, warn, info, debug or trace, for all or by module, as `warn,reentry_service=debug`
+    #[arg(long, env = "RUST_LOG", value_name = "LEVELS", default_value = "info", value_parser = levels)]
+    pub log: String,
+
+    /// Form of the log lines on standard error
     #[arg(long, env = "REENTRY_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     pub log_format: LogFormat,
 }
@@ -67,7 +110,43 @@ pub enum LogFormat {
     Json,
 }
 
+/// Where proxies give the address of the client.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ForwardedHeader {
+    /// X-Forwarded-For, which most proxies write
+    XForwardedFor,
+    /// Forwarded, of RFC 7239
+    Forwarded,
+}
+
+/// Whose pages may ask from a browser.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origins {
+    /// Everybody's.
+    All,
+    /// These, each a scheme, a host, and a port that is not the scheme's own.
+    These(Vec<HeaderValue>),
+}
+
 impl Config {
+    /// What is wrong with settings that are each sound by themselves.
+    ///
+    /// # Errors
+    /// With the settings and what they should be.
+    pub fn check(&self) -> Result<(), String> {
+        let longest = self.body_limit.max(self.batch_body_limit);
+        if self.memory < longest {
+            let memory = self.memory;
+            return Err(format!(
+                "--memory, {memory} bytes, must be at least --body-limit and --batch-body-limit, {longest} bytes"
+            ));
+        }
+        if self.metrics_listen == Some(self.listen) && self.listen.port() != 0 {
+            return Err("--metrics-listen must be another address than --listen".to_owned());
+        }
+        Ok(())
+    }
+
     /// The number of threads that compute.
     pub fn workers(&self) -> usize {
         match self.workers {
@@ -91,7 +170,17 @@ impl Default for Config {
             batch_body_limit: 8 << 20,
             row_limit: 100_000,
             compress_above: 16_384,
+            memory: 256 << 20,
+            connections: 16_384,
+            idle: Duration::from_secs(30),
             grace: Duration::from_secs(20),
+            rate_limit: None,
+            rate_burst: const { NonZeroU32::new(20).unwrap() },
+            trusted_proxies: Vec::new(),
+            forwarded_header: ForwardedHeader::XForwardedFor,
+            cors_origins: Origins::All,
+            metrics_listen: None,
+            log: "info".to_owned(),
             log_format: LogFormat::Text,
         }
     }
@@ -107,6 +196,66 @@ fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().map_err(|_| "must be a number of seconds".to_owned())?;
     let duration = Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())?;
     if duration.is_zero() { Err("must be greater than 0".to_owned()) } else { Ok(duration) }
+}
+
+/// A whole number with a maximum.
+fn up_to(most: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse().map_err(|_| "must be a whole number".to_owned())?;
+        if number > most { Err(format!("must be at most {most}")) } else { Ok(number) }
+    }
+}
+
+/// A whole number from 1 on.
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("must be at least 1".to_owned()),
+        Ok(number) => Ok(number),
+        Err(_) => Err("must be a whole number".to_owned()),
+    }
+}
+
+/// Requests a second.
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (1e-3..=1e6).contains(&rate) => Ok(rate),
+        _ => Err("must be a number of requests a second, from 0.001 to 1000000".to_owned()),
+    }
+}
+
+/// A network, or a single address.
+fn network(text: &str) -> Result<IpNet, String> {
+    let address = || text.parse().map(|address: IpAddr| IpNet::from(address)).ok();
+    text.parse().ok().or_else(address).ok_or_else(|| "must be a network, as 10.0.0.0/8, or an address".to_owned())
+}
+
+/// Levels of the log.
+fn levels(text: &str) -> Result<String, String> {
+    EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+}
+
+/// `*`, `none`, or origins between commas.
+fn origins(text: &str) -> Result<Origins, String> {
+    match text {
+        "*" => Ok(Origins::All),
+        "none" => Ok(Origins::These(Vec::new())),
+        list => list.split(',').map(|item| origin(item.trim())).collect::<Result<_, _>>().map(Origins::These),
+    }
+}
+
+fn origin(text: &str) -> Result<HeaderValue, String> {
+    let fault = || {
+        format!(
+            "{text:?} must be a scheme and a host, with a port where it is not the scheme's own, as https://planner.example"
+        )
+    };
+    let uri: Uri = text.parse().map_err(|_| fault())?;
+    let is_web = matches!(uri.scheme_str(), Some("http" | "https"));
+    // As browsers write it: nothing after the host, which is in lower case.
+    if !is_web || text.ends_with('/') || uri.path() != "/" || uri.query().is_some() || text != text.to_lowercase() {
+        return Err(fault());
+    }
+    HeaderValue::from_str(text).map_err(|_| fault())
 }
 
 #[cfg(test)]

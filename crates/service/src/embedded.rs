@@ -3,6 +3,8 @@
 use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
+use crate::coding::Coding;
+
 /// A file.
 #[derive(Clone, Copy, Debug)]
 pub struct File {
@@ -22,48 +24,27 @@ impl File {
     /// The answer to a request with these headers: the file, or that the client has it.
     pub fn answer(&self, request: &HeaderMap) -> Response {
         let (coding, bytes) = self.representation(request);
-        let tag = format!("\"{}-{coding}\"", self.hash);
+        let tag = format!("\"{}-{}\"", self.hash, coding.name());
         let both = [(header::ETAG, tag.as_str()), (header::VARY, "accept-encoding")];
         if is_known(request, &tag) {
             return (StatusCode::NOT_MODIFIED, both).into_response();
         }
         let file = (both, [(header::CONTENT_TYPE, media_type(self.path))], bytes);
         match coding {
-            "identity" => file.into_response(),
-            coding => ([(header::CONTENT_ENCODING, coding)], file.into_response()).into_response(),
+            Coding::Identity => file.into_response(),
+            coding => ([(header::CONTENT_ENCODING, coding.name())], file.into_response()).into_response(),
         }
     }
 
-    /// The coding of the greatest quality in `Accept-Encoding` (RFC 9110, section 12.5.3), the shorter one of two that are alike; a
-    /// client that accepts none gets the file as it is.
-    pub fn representation(&self, request: &HeaderMap) -> (&'static str, &'static [u8]) {
-        let accepted = lines(request, header::ACCEPT_ENCODING).join(",");
-        let mut best = (0.0, "identity", self.plain);
-        for (coding, bytes) in [("br", self.brotli), ("gzip", self.gzip), ("identity", Some(self.plain))] {
-            let quality = quality(&accepted, coding);
-            if let Some(bytes) = bytes
-                && quality > best.0
-            {
-                best = (quality, coding, bytes);
-            }
-        }
-        (best.1, best.2)
+    /// The coding that the client likes best, the shorter one of two that are alike, and the bytes in it.
+    pub fn representation(&self, request: &HeaderMap) -> (Coding, &'static [u8]) {
+        let there_is = |(coding, bytes): (Coding, Option<&'static [u8]>)| Some((coding, bytes?));
+        let offered = [(Coding::Brotli, self.brotli), (Coding::Gzip, self.gzip), (Coding::Identity, Some(self.plain))];
+        let offered: Vec<_> = offered.into_iter().filter_map(there_is).collect();
+        let codings: Vec<_> = offered.iter().map(|(coding, _)| *coding).collect();
+        let best = Coding::negotiate(request, &codings);
+        offered.into_iter().find(|(coding, _)| *coding == best).unwrap_or((Coding::Identity, self.plain))
     }
-}
-
-/// The quality that `Accept-Encoding` gives to a coding: what is said of it, or else of all that are not named.
-fn quality(accepted: &str, coding: &str) -> f64 {
-    let of = |wanted: &str| {
-        accepted.split(',').find_map(|item| {
-            let mut parameters = item.split(';').map(str::trim);
-            if !parameters.next().is_some_and(|name| name.eq_ignore_ascii_case(wanted)) {
-                return None;
-            }
-            let weight = parameters.find_map(|text| text.strip_prefix("q=").or(text.strip_prefix("Q=")));
-            Some(weight.map_or(1.0, |weight| weight.parse().unwrap_or(0.0)))
-        })
-    };
-    of(coding).or_else(|| of("*")).unwrap_or(0.0)
 }
 
 /// Whether `If-None-Match` has the tag (RFC 9110, section 13.1.2).
@@ -79,11 +60,12 @@ fn lines(request: &HeaderMap, name: HeaderName) -> Vec<&str> {
 }
 
 /// The media type, by the end of a name.
-fn media_type(path: &str) -> &'static str {
+pub fn media_type(path: &str) -> &'static str {
     match path.rsplit('.').next() {
         Some("html") => "text/html; charset=utf-8",
         Some("js") => "text/javascript; charset=utf-8",
         Some("css") => "text/css; charset=utf-8",
+        Some("png") => "image/png",
         Some("svg") => "image/svg+xml",
         Some("json") => "application/json",
         Some("woff2") => "font/woff2",

@@ -10,6 +10,7 @@ pub mod batch;
 pub mod convert;
 pub mod docs;
 pub mod health;
+pub mod metrics;
 pub mod page;
 pub mod simulate;
 pub mod validation;

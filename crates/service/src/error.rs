@@ -69,7 +69,13 @@ pub enum ApiError {
     /// The flight cannot be finished.
     #[error("the flight cannot be finished: {0}")]
     Flight(#[from] SimulationError),
-    /// All workers are busy and the queue is full.
+    /// The client has sent more requests than it may.
+    #[error("this client may send no more requests now; try again in {seconds} s")]
+    TooManyRequests {
+        /// Until the next is answered, s.
+        seconds: u64,
+    },
+    /// All workers are busy and the queue is full, or the memory is.
     #[error("the service is busy; try again in a second")]
     Busy,
     /// The time allowed ran out.
@@ -78,6 +84,9 @@ pub enum ApiError {
         /// The time allowed, s.
         seconds: f64,
     },
+    /// Nobody waits for the answer any more.
+    #[error("the request was given up")]
+    Interrupted,
     /// A fault of the service.
     #[error("the service failed on this request; its x-request-id finds it in the log")]
     Internal,
@@ -157,8 +166,13 @@ impl ApiError {
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
                 Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
             },
+            Self::TooManyRequests { .. } => {
+                (Status::TOO_MANY_REQUESTS, "/problems/too-many-requests", "Too many requests")
+            }
             Self::Busy => (Status::SERVICE_UNAVAILABLE, "/problems/busy", "Busy"),
-            Self::DeadlineExceeded { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
+            Self::DeadlineExceeded { .. } | Self::Interrupted => {
+                (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time")
+            }
             Self::Internal => (Status::INTERNAL_SERVER_ERROR, "/problems/internal", "Internal error"),
         }
     }
@@ -195,13 +209,31 @@ impl ApiError {
     }
 }
 
+/// How a request ended, in a word, for those who count: kept beside the response.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome(pub &'static str);
+
+impl ApiError {
+    /// The last part of the problem's `type`.
+    pub fn outcome(&self) -> &'static str {
+        let (_, kind, _) = self.class();
+        kind.rsplit('/').next().unwrap_or(kind)
+    }
+}
+
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let (status, ..) = self.class();
         let body = self.problem().to_json();
         let mut response = (status, [(header::CONTENT_TYPE, "application/problem+json")], body).into_response();
-        if status == StatusCode::SERVICE_UNAVAILABLE {
-            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static("1"));
+        response.extensions_mut().insert(Outcome(self.outcome()));
+        let retry_after = match self {
+            Self::Busy => Some(1),
+            Self::TooManyRequests { seconds } => Some(seconds),
+            _ => None,
+        };
+        if let Some(seconds) = retry_after {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response
     }

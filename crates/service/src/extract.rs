@@ -1,11 +1,12 @@
 //! The body of a request: declared as JSON, complete, and not too long.
 
-use axum::body::Bytes;
-use axum::extract::rejection::BytesRejection;
-use axum::extract::{DefaultBodyLimit, FromRequest, Request};
-use axum::http::{StatusCode, header};
+use axum::body::{Body, Bytes};
+use axum::extract::{FromRequest, Request};
+use axum::http::header;
+use http_body_util::BodyExt;
 
 use crate::error::ApiError;
+use crate::middleware::route;
 use crate::state::AppState;
 
 /// The bytes of a body that is declared as JSON.
@@ -32,7 +33,7 @@ impl FromRequest<AppState> for BatchPayload {
     }
 }
 
-async fn read(mut request: Request, state: &AppState, limit: usize) -> Result<Bytes, ApiError> {
+async fn read(request: Request, state: &AppState, limit: usize) -> Result<Bytes, ApiError> {
     let declared = request.headers().get(header::CONTENT_TYPE);
     let media_type = declared.map_or(Ok("nothing"), |value| value.to_str()).unwrap_or("an unreadable type");
     if !is_json(media_type) {
@@ -44,25 +45,36 @@ async fn read(mut request: Request, state: &AppState, limit: usize) -> Result<By
         // The client waits for the word to go on; any other would send all the same, and miss the answer.
         return Err(ApiError::PayloadTooLarge { limit });
     }
-    DefaultBodyLimit::max(limit).apply(&mut request);
     let deadline = state.config.deadline;
-    match tokio::time::timeout(deadline, Bytes::from_request(request, state)).await {
-        Ok(Ok(body)) => Ok(body),
-        Ok(Err(rejection)) => Err(unreadable(&rejection, limit)),
-        Err(_) => Err(ApiError::BodyTimeout { seconds: deadline.as_secs_f64() }),
+    let route = route(&request);
+    let received = collect(request.into_body(), state, limit);
+    let body = tokio::time::timeout(deadline, received).await;
+    let body = body.map_err(|_| ApiError::BodyTimeout { seconds: deadline.as_secs_f64() })??;
+    state.metrics.received(&route, body.len());
+    Ok(body)
+}
+
+/// The bytes of a body, which count as held from the first on.
+async fn collect(mut body: Body, state: &AppState, limit: usize) -> Result<Bytes, ApiError> {
+    let mut share = state.memory.share();
+    let mut bytes = Vec::new();
+    while let Some(frame) = body.frame().await {
+        let frame = frame.map_err(|error| ApiError::UnreadableBody(error.to_string()))?;
+        let Ok(data) = frame.into_data() else { continue };
+        if bytes.len() + data.len() > limit {
+            return Err(ApiError::PayloadTooLarge { limit });
+        }
+        if state.memory.is_full() {
+            return Err(ApiError::Busy);
+        }
+        share.grow(data.len());
+        bytes.extend_from_slice(&data);
     }
+    Ok(share.keep(bytes))
 }
 
 /// `application/json` or a type built on it, with any parameters.
 fn is_json(media_type: &str) -> bool {
     let essence = media_type.split(';').next().unwrap_or_default().trim().to_ascii_lowercase();
     essence == "application/json" || (essence.starts_with("application/") && essence.ends_with("+json"))
-}
-
-fn unreadable(rejection: &BytesRejection, limit: usize) -> ApiError {
-    if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
-        ApiError::PayloadTooLarge { limit }
-    } else {
-        ApiError::UnreadableBody(rejection.body_text())
-    }
 }

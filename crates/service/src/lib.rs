@@ -4,15 +4,22 @@
 
 pub mod answer;
 pub mod cli;
+pub mod client;
+pub mod coding;
 pub mod compute;
 pub mod config;
+pub mod connection;
 pub mod embedded;
 pub mod endpoints;
 pub mod error;
 pub mod extract;
 pub mod format;
+pub mod memory;
+pub mod metrics;
 pub mod middleware;
 pub mod openapi;
+pub mod rate;
+pub mod reply;
 pub mod router;
 pub mod serve;
 pub mod state;

@@ -1,5 +1,7 @@
 //! The program `reentry`.
 
+use std::io;
+use std::net::SocketAddr;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -7,7 +9,7 @@ use reentry_service::cli::{Cli, Failure};
 use reentry_service::config::Config;
 use reentry_service::serve::{serve, stop_signal};
 use reentry_service::state::AppState;
-use reentry_service::telemetry;
+use reentry_service::telemetry::Log;
 use tokio::net::TcpListener;
 
 fn main() -> ExitCode {
@@ -15,15 +17,30 @@ fn main() -> ExitCode {
     result.as_ref().err().map_or(ExitCode::SUCCESS, Failure::end)
 }
 
+fn run(config: Config) -> Result<(), Failure> {
+    config.check().map_err(Failure::Setting)?;
+    let log = Log::start(&config);
+    Ok(listen(config, &log)?)
+}
+
 #[tokio::main]
-async fn run(config: Config) -> std::io::Result<()> {
-    telemetry::start(config.log_format);
-    let address = config.listen;
-    let listener = TcpListener::bind(address)
-        .await
-        .map_err(|error| std::io::Error::new(error.kind(), format!("cannot listen on {address}: {error}")))?;
-    let state = AppState::new(config)?;
+async fn listen(config: Config, log: &Log) -> io::Result<()> {
+    let listener = bind(config.listen).await?;
+    let metrics = match config.metrics_listen {
+        Some(address) => Some(bind(address).await?),
+        None => None,
+    };
+    let state = AppState::new(config, log.lost_lines())?;
     let stop = stop_signal()?;
     tracing::info!("listening on http://{}", listener.local_addr()?);
-    serve(listener, state, stop).await
+    if let Some(metrics) = &metrics {
+        tracing::info!("metrics on http://{}/metrics", metrics.local_addr()?);
+    }
+    serve(listener, metrics, state, stop).await;
+    Ok(())
+}
+
+async fn bind(address: SocketAddr) -> io::Result<TcpListener> {
+    let told = |error: io::Error| io::Error::new(error.kind(), format!("cannot listen on {address}: {error}"));
+    TcpListener::bind(address).await.map_err(told)
 }

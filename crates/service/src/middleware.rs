@@ -1,38 +1,62 @@
-//! What happens around every request: its identifier and its line in the log.
+//! What happens around every request: its identifier, its line in the log, its place in the metrics, what a client may send, and what a
+//! browser may do with the answer.
 
+use std::pin::Pin;
+use std::task::{Context, Poll};
 use std::time::Instant;
 
-use axum::extract::Request;
-use axum::http::{HeaderName, HeaderValue};
+use axum::body::{Body, Bytes, HttpBody};
+use axum::extract::{MatchedPath, Request, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, header};
 use axum::middleware::Next;
-use axum::response::Response;
+use axum::response::{IntoResponse, Response};
+use hyper::body::{Frame, SizeHint};
 use tracing::Instrument;
 use uuid::Uuid;
+
+use crate::client::client;
+use crate::error::Outcome;
+use crate::rate::Left;
+use crate::state::AppState;
 
 /// The header that names a request, in the request and in its answer.
 pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 const LONGEST_REQUEST_ID: usize = 128;
 
-/// Gives every answer an `x-request-id`, and every request one line in the log.
-pub async fn observe(request: Request, next: Next) -> Response {
+/// The route of a request, as the OpenAPI document has it; `other` at none.
+pub fn route(request: &Request) -> String {
+    request.extensions().get::<MatchedPath>().map_or("other", MatchedPath::as_str).to_owned()
+}
+
+/// Gives every answer an `x-request-id`, and every request one line in the log and its place in the metrics.
+///
+/// Neither has anything of the request but its method, its path without the query, its identifier and the client's address.
+pub async fn observe(State(app): State<AppState>, request: Request, next: Next) -> Response {
     let id = request.headers().get(REQUEST_ID).filter(|id| is_sound(id)).cloned().unwrap_or_else(new_id);
-    let line = LogLine {
-        start: Instant::now(),
-        span: tracing::info_span!(
-            "request",
-            id = id.to_str().unwrap_or_default(),
-            method = %request.method(),
-            path = request.uri().path(),
-        ),
-        status: None,
-    };
-    let span = line.span.clone();
-    let mut line = line;
+    let client = client(request.extensions(), request.headers(), &app.config);
+    let span = tracing::info_span!(
+        "request",
+        id = id.to_str().unwrap_or_default(),
+        client = client.map(tracing::field::display),
+        method = %request.method(),
+        path = request.uri().path(),
+    );
+    let has_no_body = request.method() == Method::HEAD;
+    let route = route(&request);
+    app.metrics.request_begun(&route);
+    let mut line =
+        Line { app, start: Instant::now(), span: span.clone(), route, answer: None, sent: 0, is_complete: false };
     let mut response = next.run(request).instrument(span).await;
-    line.status = Some(response.status().as_u16());
+    let outcome = response.extensions().get().map_or("ok", |Outcome(outcome)| outcome);
+    line.answer = Some((response.status().as_u16(), outcome));
     response.headers_mut().insert(REQUEST_ID, id);
-    response
+    if line.app.is_draining() {
+        // The client is to send what comes next to another.
+        response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+    }
+    line.is_complete = has_no_body || response.body().is_end_stream();
+    response.map(|body| Body::new(Observed { body, line }))
 }
 
 /// Up to 128 visible ASCII characters.
@@ -44,21 +68,102 @@ fn new_id() -> HeaderValue {
     HeaderValue::try_from(Uuid::new_v4().to_string()).unwrap_or_else(|_| HeaderValue::from_static("none"))
 }
 
-/// Written when the request is over: answered, or given up by its client.
-struct LogLine {
+/// Written when the request is over: answered to the last byte, or given up by its client.
+struct Line {
+    app: AppState,
     start: Instant,
     span: tracing::Span,
-    status: Option<u16>,
+    route: String,
+    /// Status and outcome, once the answer begins.
+    answer: Option<(u16, &'static str)>,
+    /// Bytes of the answer's body.
+    sent: u64,
+    is_complete: bool,
 }
 
-impl Drop for LogLine {
+impl Drop for Line {
     fn drop(&mut self) {
-        let duration_ms = self.start.elapsed().as_secs_f64() * 1e3;
+        let duration = self.start.elapsed();
+        let duration_ms = duration.as_secs_f64() * 1e3;
+        let outcome = match self.answer {
+            Some((_, outcome)) if self.is_complete => outcome,
+            _ => "abandoned",
+        };
+        self.app.metrics.request_over(&self.route, outcome, duration, self.sent);
+        let bytes = self.sent;
         let _inside = self.span.enter();
-        if let Some(status) = self.status {
-            tracing::info!(status, duration_ms, "answered");
-        } else {
-            tracing::info!(duration_ms, "client went away");
+        match self.answer {
+            Some((status, _)) if self.is_complete => tracing::info!(status, duration_ms, bytes, "answered"),
+            Some((status, _)) => tracing::info!(status, duration_ms, bytes, "client went away from its answer"),
+            None => tracing::info!(duration_ms, "client went away"),
         }
     }
+}
+
+/// The body of an answer, until its end.
+struct Observed {
+    body: Body,
+    line: Line,
+}
+
+impl HttpBody for Observed {
+    type Data = Bytes;
+    type Error = axum::Error;
+
+    fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+        let frame = Pin::new(&mut self.body).poll_frame(context);
+        match &frame {
+            Poll::Ready(Some(Ok(frame))) => self.line.sent += frame.data_ref().map_or(0, Bytes::len) as u64,
+            Poll::Ready(None) => self.line.is_complete = true,
+            _ => {}
+        }
+        self.line.is_complete |= self.body.is_end_stream();
+        frame
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}
+
+/// Refuses what a client sends beyond its rate, and tells it what it has left; watching the service is free.
+pub async fn limit(State(app): State<AppState>, request: Request, next: Next) -> Response {
+    let Some(limit) = &app.rate_limit else { return next.run(request).await };
+    if FREE.contains(&request.uri().path()) {
+        return next.run(request).await;
+    }
+    let Some(client) = client(request.extensions(), request.headers(), &app.config) else {
+        return next.run(request).await;
+    };
+    let (left, mut response) = match limit.take(client) {
+        Ok(left) => (left, next.run(request).await),
+        Err(refusal) => (Left::default(), refusal.into_response()),
+    };
+    limit.tell(left, response.headers_mut());
+    response
+}
+
+/// What counts for no rate limit.
+const FREE: [&str; 3] = ["/health/live", "/health/ready", "/metrics"];
+
+/// What a browser may do with an answer that says nothing else: show it by itself, run nothing in it, and keep it nowhere.
+const PROTECTION: [(HeaderName, HeaderValue); 4] = [
+    (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static("default-src 'none'; frame-ancestors 'none'")),
+    (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+    (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+    (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+];
+
+/// Gives every answer the headers that protect the browser that gets it.
+pub async fn protect(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let headers: &mut HeaderMap = response.headers_mut();
+    for (name, value) in PROTECTION {
+        headers.entry(name).or_insert(value);
+    }
+    response
 }

@@ -1,25 +1,25 @@
 //! Every route.
 
-use axum::extract::OriginalUri;
-use axum::http::{Method, header};
+use axum::body::Bytes;
+use axum::extract::{OriginalUri, State};
+use axum::http::{HeaderMap, Method, header};
 use axum::routing::get;
-use axum::{Json, Router, middleware};
+use axum::{Router, middleware};
 use serde_json::Value;
-use tower_http::CompressionLevel;
-use tower_http::compression::CompressionLayer;
-use tower_http::compression::predicate::SizeAbove;
-use tower_http::cors::{Any, CorsLayer};
+use tower_http::cors::{AllowOrigin, CorsLayer};
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use crate::endpoints::{analytic, batch, convert, docs, health, page, simulate, validation};
+use crate::config::Origins;
+use crate::endpoints::{analytic, batch, convert, docs, health, metrics, page, simulate, validation};
 use crate::error::ApiError;
-use crate::middleware::{REQUEST_ID, observe};
+use crate::middleware::{REQUEST_ID, limit, observe, protect};
 use crate::openapi::{self, Document};
+use crate::rate;
 use crate::state::AppState;
 
-/// The routes of the OpenAPI document.
+/// The routes of the OpenAPI document, but for the metrics, which may have an address of their own.
 fn routes() -> OpenApiRouter<AppState> {
     OpenApiRouter::with_openapi(Document::openapi())
         .routes(routes!(simulate::simulate))
@@ -31,51 +31,56 @@ fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(health::ready))
 }
 
+fn with_metrics(routes: OpenApiRouter<AppState>) -> OpenApiRouter<AppState> {
+    routes.routes(routes!(metrics::metrics))
+}
+
 /// The OpenAPI document that the service gives and that is committed as `openapi/openapi.json`.
 pub fn document() -> Value {
-    openapi::strict(routes().get_openapi())
+    openapi::strict(with_metrics(routes()).get_openapi())
 }
 
 /// The whole service.
 pub fn app(state: AppState) -> Router {
-    let (api, _) = routes().split_for_parts();
-    let document = document();
-    let api = api
-        .route("/openapi.json", get(move || std::future::ready(Json(document.clone()))))
+    let has_metrics = state.config.metrics_listen.is_none();
+    let (api, _) = if has_metrics { with_metrics(routes()) } else { routes() }.split_for_parts();
+    let text = Bytes::from(document().to_string());
+    let document = async |State(app): State<AppState>, request: HeaderMap| docs::document(&app, &request, text).await;
+    let all = api
+        .route("/openapi.json", get(document))
         .route("/docs", get(docs::redirect))
         .route("/docs/", get(docs::page))
-        .route("/docs/{*name}", get(docs::file));
-    // The page is compressed already.
-    let all = compressed(api, &state)
+        .route("/docs/{*name}", get(docs::file))
         .route("/", get(page::index))
-        .route("/assets/{name}", get(page::asset))
-        .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })
-        .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
-            ApiError::MethodNotAllowed(uri.path().to_owned())
-        });
+        .route("/assets/{name}", get(page::asset));
     surrounded(all, state)
 }
 
-/// Routes with what surrounds those of the API: compression, CORS, the log.
-pub fn layered(routes: Router<AppState>, state: AppState) -> Router {
-    surrounded(compressed(routes, &state), state)
+/// `GET /metrics`, where it has an address of its own.
+pub fn metrics_app(state: AppState) -> Router {
+    let (metrics, _) = with_metrics(OpenApiRouter::default()).split_for_parts();
+    surrounded(metrics, state)
 }
 
-/// Routes whose answers are compressed.
-fn compressed(routes: Router<AppState>, state: &AppState) -> Router<AppState> {
-    routes.layer(
-        CompressionLayer::new()
-            .quality(CompressionLevel::Fastest)
-            .compress_when(SizeAbove::new(state.config.compress_above)),
-    )
-}
-
-/// Routes with CORS and the log.
-fn surrounded(routes: Router<AppState>, state: AppState) -> Router {
+/// Routes with what surrounds them: what answers elsewhere, the rate limit, CORS, what protects browsers, the log and the metrics.
+pub fn surrounded(routes: Router<AppState>, state: AppState) -> Router {
+    let origins = match &state.config.cors_origins {
+        Origins::All => AllowOrigin::any(),
+        Origins::These(origins) => AllowOrigin::list(origins.clone()),
+    };
     let cors = CorsLayer::new()
-        .allow_origin(Any)
+        .allow_origin(origins)
         .allow_methods([Method::GET, Method::POST])
         .allow_headers([header::CONTENT_TYPE, header::ACCEPT, REQUEST_ID])
-        .expose_headers([REQUEST_ID, header::RETRY_AFTER]);
-    routes.layer(cors).layer(middleware::from_fn(observe)).with_state(state)
+        .expose_headers([REQUEST_ID, header::RETRY_AFTER, rate::POLICY, rate::LEFT]);
+    routes
+        .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })
+        .method_not_allowed_fallback(|OriginalUri(uri): OriginalUri| async move {
+            ApiError::MethodNotAllowed(uri.path().to_owned())
+        })
+        .layer(middleware::from_fn_with_state(state.clone(), limit))
+        .layer(cors)
+        .layer(middleware::from_fn(protect))
+        .layer(middleware::from_fn_with_state(state.clone(), observe))
+        .with_state(state)
 }

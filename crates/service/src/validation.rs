@@ -19,7 +19,7 @@ use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use crate::answer;
+use crate::answer::{self, Answer};
 use crate::error::ApiError;
 use crate::format::Format;
 use crate::wire::json;
@@ -130,8 +130,8 @@ impl Validation {
     ///
     /// # Errors
     /// Never: all of it is text and numbers.
-    pub fn to_json(&self) -> Result<Vec<u8>, ApiError> {
-        Ok(serde_json::to_vec(self)?)
+    pub fn to_json(&self) -> Result<Vec<u8>, serde_json::Error> {
+        serde_json::to_vec(self)
     }
 
     /// The checks that did not pass.
@@ -243,14 +243,14 @@ impl Program<'_> {
 
 /// The answer to a state, in every coordinate system; null where there is none.
 fn convert(request: Value) -> Value {
-    answered(answer::convert(request)).unwrap_or_default()
+    answered(answer::convert(request, &AtomicBool::new(false))).unwrap_or_default()
 }
 
 /// The tree of an answer; null where there is none, in which no check finds what it expects.
-fn answered(result: Result<Vec<u8>, ApiError>) -> Result<Value, ApiError> {
+fn answered(result: Result<Answer, ApiError>) -> Result<Value, ApiError> {
     match result {
-        Err(error @ ApiError::Flight(SimulationError::Interrupted { .. })) => Err(error),
-        result => Ok(result.ok().and_then(|body| json::parse(&body).ok()).unwrap_or_default()),
+        Err(error @ (ApiError::Interrupted | ApiError::Flight(SimulationError::Interrupted { .. }))) => Err(error),
+        result => Ok(result.ok().and_then(|answer| json::parse(&answer.body).ok()).unwrap_or_default()),
     }
 }
 

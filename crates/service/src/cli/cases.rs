@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
+use crate::answer;
 use crate::cli::{Failure, Output, failure, tell};
 use crate::compute;
 use crate::error::{ApiError, FieldError};
@@ -80,9 +81,9 @@ impl States {
 }
 
 /// A function of [`crate::answer`].
-pub trait Answer: Fn(Value, Format, usize, &AtomicBool) -> Result<Vec<u8>, ApiError> + Sync {}
+pub trait Answer: Fn(Value, Format, usize, &AtomicBool) -> Result<answer::Answer, ApiError> + Sync {}
 
-impl<F: Fn(Value, Format, usize, &AtomicBool) -> Result<Vec<u8>, ApiError> + Sync> Answer for F {}
+impl<F: Fn(Value, Format, usize, &AtomicBool) -> Result<answer::Answer, ApiError> + Sync> Answer for F {}
 
 struct Run<A> {
     place: String,
@@ -155,7 +156,7 @@ impl<A: Answer> Run<A> {
     }
 
     fn answer(&self, tree: Value, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
-        (self.answer)(tree, self.format, self.row_limit, interrupt)
+        (self.answer)(tree, self.format, self.row_limit, interrupt).map(|answer| answer.body)
     }
 
     fn failed(&self, error: &ApiError) -> Failure {

@@ -1,5 +1,6 @@
 //! `reentry validate`: what the program makes of the reference cases that are built into it.
 
+use std::io;
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, ValueEnum};
@@ -37,7 +38,7 @@ impl Validate {
         let validation = Validation::run(&interrupt).map_err(|error| failed(&error))?;
         let text = match self.format {
             Format::Text => validation.to_text().into_bytes(),
-            Format::Json => with_line_end(validation.to_json().map_err(|error| failed(&error))?),
+            Format::Json => with_line_end(validation.to_json().map_err(io::Error::from)?),
             Format::Markdown => validation.to_markdown().into_bytes(),
         };
         Output::Standard.write(&text)?;

@@ -3,14 +3,14 @@
 use std::sync::atomic::AtomicBool;
 
 use axum::extract::State;
-use axum::http::header;
 use axum::http::request::Parts;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 
 use crate::answer;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
+use crate::reply::reply;
 use crate::state::AppState;
 use crate::wire::analytic::{AnalyticRequest, AnalyticResponse};
 use crate::wire::json;
@@ -38,6 +38,5 @@ pub async fn analytic(State(app): State<AppState>, parts: Parts, Payload(body): 
     let format = Format::negotiate(&parts, &Format::OF_THEORIES)?;
     let row_limit = app.config.row_limit;
     let run = move |interrupt: &AtomicBool| answer::analytic(json::parse(&body)?, format, row_limit, interrupt);
-    let body = app.compute.run(run).await?;
-    Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
+    reply(&app, "/analytic", &parts.headers, format.media_type(), run).await
 }

@@ -5,16 +5,17 @@ use std::sync::atomic::AtomicBool;
 
 use axum::body::{Body, Bytes};
 use axum::extract::State;
-use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
-use futures_util::{StreamExt, stream};
+use futures_util::{Stream, stream};
+use tokio::sync::mpsc;
 use tokio::time::Instant;
 
-use crate::answer;
+use crate::answer::{self, Answer};
 use crate::error::ApiError;
 use crate::extract::BatchPayload;
 use crate::format::Format;
+use crate::reply::{self, Lines};
 use crate::state::AppState;
 use crate::wire::scenario::SimulateRequest;
 use crate::wire::{batch, json};
@@ -41,45 +42,84 @@ pub async fn simulate_batch(
     BatchPayload(body): BatchPayload,
 ) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Ndjson])?;
-    let cases = app.compute.run(move |_| cases(&body)).await?;
-    let row_limit = app.config.row_limit;
+    let coding = reply::coding(&parts.headers);
+    let cases = app.compute.run(ROUTE, move |_| cases(&body)).await?;
     let fly = |case: Bytes| {
-        move |interrupt: &AtomicBool| {
-            let tree = json::parse(&case).map_err(ApiError::CaseNotJson)?;
-            answer::simulate(tree, Format::Json, row_limit, interrupt)
-        }
+        let app = app.clone();
+        move |interrupt: &AtomicBool| fly(&app, &case, interrupt)
     };
     let jobs: Vec<_> = cases.into_iter().map(fly).collect();
-    let mut left = jobs.len() - 1;
+    let left = jobs.len() - 1;
     let time = app.config.batch_deadline;
     let start = Instant::now();
-    let mut results = app.compute.run_batch(jobs, time)?;
+    let mut results = app.compute.run_batch(ROUTE, jobs, time)?;
     // The status goes before the first line: until there is one, a batch runs out of time like any other request.
     let first = results.recv().await.ok_or(ApiError::Internal)?;
     if matches!(first, Err(ApiError::DeadlineExceeded { .. })) && start.elapsed() >= time {
         return first.map(IntoResponse::into_response);
     }
-    let rest = stream::poll_fn(move |context| {
-        results.poll_recv(context).map(|result| match result {
-            Some(result) => {
-                left -= 1;
-                Some(Ok(line(result)))
+    let lines = Lines::new(coding)?;
+    let batch = Batch { app, results, first: Some(first), left };
+    Ok(reply::response(format.media_type(), coding, Body::from_stream(batch.coded(lines))))
+}
+
+const ROUTE: &str = "/simulate/batch";
+
+fn fly(app: &AppState, case: &[u8], interrupt: &AtomicBool) -> Result<Bytes, ApiError> {
+    let tree = json::parse(case).map_err(ApiError::CaseNotJson)?;
+    let Answer { body, work } = answer::simulate(tree, Format::Json, app.config.row_limit, interrupt)?;
+    app.metrics.flown(ROUTE, work);
+    Ok(app.memory.hold(with_line_end(body)))
+}
+
+fn with_line_end(mut line: Vec<u8>) -> Vec<u8> {
+    line.push(b'\n');
+    line
+}
+
+/// A batch whose answer is being sent.
+struct Batch {
+    app: AppState,
+    results: mpsc::Receiver<Result<Bytes, ApiError>>,
+    /// The first result, until it has been taken.
+    first: Option<Result<Bytes, ApiError>>,
+    /// Cases after that.
+    left: usize,
+}
+
+impl Batch {
+    /// The line of the next case; none after the last.
+    async fn next(&mut self) -> io::Result<Option<Bytes>> {
+        let result = match self.first.take() {
+            Some(first) => first,
+            None if self.left == 0 => return Ok(None),
+            None => {
+                self.left -= 1;
+                let ended = || io::Error::other("the batch ended before its last case");
+                self.results.recv().await.ok_or_else(ended)?
             }
-            None => (left > 0).then(|| Err(io::Error::other("the batch ended before its last case"))),
+        };
+        self.app.metrics.case_over(result.as_ref().map_or_else(ApiError::outcome, |_| "ok"));
+        Ok(Some(result.unwrap_or_else(|error| with_line_end(error.problem().to_json()).into())))
+    }
+
+    /// The lines, coded.
+    fn coded(self, lines: Lines) -> impl Stream<Item = io::Result<Bytes>> {
+        stream::try_unfold(Some((self, lines)), async |state| {
+            let Some((mut batch, lines)) = state else { return Ok(None) };
+            match batch.next().await? {
+                Some(line) => {
+                    let (lines, line) = lines.next(&batch.app, ROUTE, line).await.map_err(io::Error::other)?;
+                    Ok(Some((line, Some((batch, lines)))))
+                }
+                None => Ok(Some((lines.end().map_err(io::Error::other)?, None))),
+            }
         })
-    });
-    let lines = stream::once(async { Ok(line(first)) }).chain(rest);
-    Ok(([(header::CONTENT_TYPE, format.media_type())], Body::from_stream(lines)).into_response())
+    }
 }
 
 /// The text of each case: a case is parsed when its turn comes, as its tree is many times as large.
 fn cases(body: &Bytes) -> Result<Vec<Bytes>, ApiError> {
     let cases = batch::cases(json::elements(body)?).map_err(ApiError::Invalid)?;
     Ok(cases.into_iter().map(|case| body.slice_ref(case.get().as_bytes())).collect())
-}
-
-fn line(result: Result<Vec<u8>, ApiError>) -> Bytes {
-    let mut line = result.unwrap_or_else(|error| error.problem().to_json());
-    line.push(b'\n');
-    line.into()
 }

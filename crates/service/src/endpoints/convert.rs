@@ -1,14 +1,16 @@
 //! `POST /convert`: a state in every coordinate system.
 
+use std::sync::atomic::AtomicBool;
+
 use axum::extract::State;
-use axum::http::header;
 use axum::http::request::Parts;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 
 use crate::answer;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
+use crate::reply::reply;
 use crate::state::AppState;
 use crate::wire::convert::{ConvertRequest, ConvertResponse};
 use crate::wire::json;
@@ -26,6 +28,6 @@ use crate::wire::json;
 )]
 pub async fn convert(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;
-    let body = app.compute.run(move |_| answer::convert(json::parse(&body)?)).await?;
-    Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
+    let run = move |interrupt: &AtomicBool| answer::convert(json::parse(&body)?, interrupt);
+    reply(&app, "/convert", &parts.headers, format.media_type(), run).await
 }

@@ -1,13 +1,20 @@
 //! `GET /docs`: the API to read and to try, from files in the program; nothing comes from elsewhere.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
 
-use axum::extract::{OriginalUri, Path};
-use axum::http::header;
+use axum::body::Bytes;
+use axum::extract::{OriginalUri, Path, State};
+use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Redirect, Response};
 use utoipa_swagger_ui::Config;
 
+use crate::answer::Answer;
+use crate::embedded::media_type;
 use crate::error::ApiError;
+use crate::metrics::Work;
+use crate::reply::reply;
+use crate::state::AppState;
 
 /// The validator of Swagger's own site is left out.
 static CONFIG: LazyLock<Arc<Config<'static>>> =
@@ -22,21 +29,43 @@ pub async fn redirect() -> Redirect {
 ///
 /// # Errors
 /// [`ApiError::NotFound`] where there is none.
-pub async fn page(uri: OriginalUri) -> Result<Response, ApiError> {
-    file(uri, Path("index.html".to_owned())).await
+pub async fn page(app: State<AppState>, uri: OriginalUri, request: HeaderMap) -> Result<Response, ApiError> {
+    file(app, uri, Path("index.html".to_owned()), request).await
 }
 
-/// A file of the page.
+/// A file of the page, coded in the pool: the longest has more than a million bytes.
 ///
 /// # Errors
 /// [`ApiError::NotFound`] where there is none.
-pub async fn file(OriginalUri(uri): OriginalUri, Path(name): Path<String>) -> Result<Response, ApiError> {
-    match utoipa_swagger_ui::serve(&name, Arc::clone(&CONFIG)) {
-        Ok(Some(file)) => Ok(([(header::CONTENT_TYPE, file.content_type)], file.bytes.into_owned()).into_response()),
-        Ok(None) => Err(ApiError::NotFound(uri.path().to_owned())),
+pub async fn file(
+    State(app): State<AppState>,
+    OriginalUri(uri): OriginalUri,
+    Path(name): Path<String>,
+    request: HeaderMap,
+) -> Result<Response, ApiError> {
+    let file = match utoipa_swagger_ui::serve(&name, Arc::clone(&CONFIG)) {
+        Ok(Some(file)) => file,
+        Ok(None) => return Err(ApiError::NotFound(uri.path().to_owned())),
         Err(error) => {
             tracing::error!(%error, "a file of the documentation could not be made");
-            Err(ApiError::Internal)
+            return Err(ApiError::Internal);
         }
-    }
+    };
+    let media_type = media_type(&name);
+    let job = move |_: &AtomicBool| Ok(Answer { body: file.bytes.into_owned(), work: Work::default() });
+    let response = reply(&app, "/docs/{*name}", &request, media_type, job).await?;
+    Ok(([(header::CONTENT_SECURITY_POLICY, POLICY), (header::CACHE_CONTROL, "no-cache")], response).into_response())
+}
+
+/// What a browser may do with the page: load from this service, with the styles that it writes into itself.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; \
+                      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// The OpenAPI document, whose text is given.
+///
+/// # Errors
+/// When the service is busy.
+pub async fn document(app: &AppState, request: &HeaderMap, text: Bytes) -> Result<Response, ApiError> {
+    let job = move |_: &AtomicBool| Ok(Answer { body: text.into(), work: Work::default() });
+    reply(app, "/openapi.json", request, "application/json", job).await
 }

@@ -3,14 +3,14 @@
 use std::sync::atomic::AtomicBool;
 
 use axum::extract::State;
-use axum::http::header;
 use axum::http::request::Parts;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 
 use crate::answer;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
+use crate::reply::reply;
 use crate::state::AppState;
 use crate::wire::json;
 use crate::wire::scenario::SimulateRequest;
@@ -48,6 +48,5 @@ pub async fn simulate(State(app): State<AppState>, parts: Parts, Payload(body): 
     let format = Format::negotiate(&parts, &Format::OF_FLIGHTS)?;
     let row_limit = app.config.row_limit;
     let run = move |interrupt: &AtomicBool| answer::simulate(json::parse(&body)?, format, row_limit, interrupt);
-    let body = app.compute.run(run).await?;
-    Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
+    reply(&app, "/simulate", &parts.headers, format.media_type(), run).await
 }

@@ -1,12 +1,16 @@
 //! `GET /validation`: the reference cases that are built into the program.
 
-use axum::extract::State;
-use axum::http::header;
-use axum::http::request::Parts;
-use axum::response::{IntoResponse, Response};
+use std::sync::atomic::AtomicBool;
 
+use axum::extract::State;
+use axum::http::request::Parts;
+use axum::response::Response;
+
+use crate::answer::Answer;
 use crate::error::ApiError;
 use crate::format::Format;
+use crate::metrics::Work;
+use crate::reply::reply;
 use crate::state::AppState;
 use crate::validation::Validation;
 
@@ -24,6 +28,9 @@ use crate::validation::Validation;
 )]
 pub async fn validation(State(app): State<AppState>, parts: Parts) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;
-    let body = app.compute.run(|interrupt| Validation::run(interrupt)?.to_json()).await?;
-    Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
+    let run = |interrupt: &AtomicBool| {
+        let body = Validation::run(interrupt)?.to_json().map_err(|_| ApiError::Internal)?;
+        Ok(Answer { body, work: Work::default() })
+    };
+    reply(&app, "/validation", &parts.headers, format.media_type(), run).await
 }

@@ -1,5 +1,7 @@
 //! The request and the answer of `/analytic`: a theory beside a flight, row by row.
 
+use std::io::Write;
+
 use reentry::analytic::{self, Comparison, Fault as TheoryFault, Prediction, Theory};
 use reentry::trajectory::{FlightPoint, Trajectory};
 use serde::Serialize;
@@ -330,8 +332,9 @@ impl AnalyticResponse {
     /// A header and a line a row: time, altitude, then what is simulated and what is predicted; no number is an empty cell.
     ///
     /// # Errors
-    /// Never: memory can always be written.
-    pub fn to_csv(&self) -> Result<Vec<u8>, serde_json::Error> {
+    /// When it cannot be written.
+    pub fn write_csv(&self, csv: &mut impl Write) -> Result<(), serde_json::Error> {
+        let text = |csv: &mut _, text: &[u8]| Write::write_all(csv, text).map_err(serde_json::Error::io);
         let Self { simulated, predicted, .. } = self;
         let given = [
             ("time", &simulated.time),
@@ -346,19 +349,18 @@ impl AnalyticResponse {
             ("predicted_drag_deceleration", &predicted.drag_deceleration),
         ];
         let names: Vec<_> = given.iter().map(|(name, _)| *name).chain(maybe.iter().map(|(name, _)| *name)).collect();
-        let mut csv = names.join(",").into_bytes();
+        text(csv, names.join(",").as_bytes())?;
         for row in 0..simulated.time.len() {
             let cells = given.iter().map(|(_, column)| column.get(row).copied());
             let cells = cells.chain(maybe.iter().map(|(_, column)| column.get(row).copied().flatten()));
             for (index, cell) in cells.enumerate() {
-                csv.push(if index == 0 { b'\n' } else { b',' });
+                text(csv, if index == 0 { b"\n" } else { b"," })?;
                 if let Some(number) = cell {
-                    serde_json::to_writer(&mut csv, &number)?;
+                    serde_json::to_writer(&mut *csv, &number)?;
                 }
             }
         }
-        csv.push(b'\n');
-        Ok(csv)
+        text(csv, b"\n")
     }
 }
 

@@ -374,25 +374,25 @@ impl Columns {
     /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
     ///
     /// # Errors
-    /// Never: memory can always be written.
-    pub fn to_csv(&self) -> Result<Vec<u8>, serde_json::Error> {
-        let mut csv = Vec::with_capacity(20 * self.chosen.len() * (self.points.len() + 1));
+    /// When it cannot be written.
+    pub fn write_csv(&self, csv: &mut impl Write) -> Result<(), serde_json::Error> {
+        let line = |csv: &mut _, text: &[u8]| Write::write_all(csv, text).map_err(serde_json::Error::io);
         let names: Vec<_> = self.chosen.iter().map(|column| column.name).collect();
-        csv.extend_from_slice(names.join(",").as_bytes());
-        csv.push(b'\n');
+        line(csv, names.join(",").as_bytes())?;
+        line(csv, b"\n")?;
         for point in &self.points {
             for (index, column) in self.chosen.iter().enumerate() {
                 if index > 0 {
-                    csv.push(b',');
+                    line(csv, b",")?;
                 }
                 match column.of(point, self.unit, self.epoch) {
-                    Cell::Number(number) => serde_json::to_writer(&mut csv, &number)?,
+                    Cell::Number(number) => serde_json::to_writer(&mut *csv, &number)?,
                     Cell::Instant(instant) => write!(csv, "{instant}").map_err(serde_json::Error::io)?,
                     Cell::Nothing => {}
                 }
             }
-            csv.push(b'\n');
+            line(csv, b"\n")?;
         }
-        Ok(csv)
+        Ok(())
     }
 }

@@ -1,5 +1,7 @@
 //! CZML 1.0 (the CZML Guide of `CesiumJS`): a packet for the flight, one for every point.
 
+use std::io::Write;
+
 use serde_json::{Value, json};
 
 use super::{Instant, NamedPoint, Track, Vertex};
@@ -10,8 +12,8 @@ impl Track<'_> {
     /// CZML cannot do without a date: a flight without an epoch starts at noon of 2000 January 1, UTC.
     ///
     /// # Errors
-    /// Never: there are no keys but strings, and memory can always be written.
-    pub fn to_czml(&self) -> Result<Vec<u8>, serde_json::Error> {
+    /// When it cannot be written.
+    pub fn write_czml(&self, out: &mut impl Write) -> Result<(), serde_json::Error> {
         let epoch = self.epoch.unwrap_or_else(Instant::noon_2000);
         let end = self.vertices.last().map_or(0.0, |vertex| vertex.time);
         let [start, end] =
@@ -42,7 +44,7 @@ impl Track<'_> {
             "point": {"pixelSize": 10},
         });
         let points = self.points.iter().enumerate().map(|(index, point)| packet(index, point));
-        serde_json::to_vec(&[document, flight].into_iter().chain(points).collect::<Value>())
+        serde_json::to_writer(out, &[document, flight].into_iter().chain(points).collect::<Value>())
     }
 }
 

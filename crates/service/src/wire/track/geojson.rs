@@ -1,5 +1,7 @@
 //! `GeoJSON` (RFC 7946): a feature for the track, one for every point.
 
+use std::io::Write;
+
 use geojson::{Feature, FeatureCollection, Geometry};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -16,8 +18,8 @@ impl Track<'_> {
     /// over a pole by way of it.
     ///
     /// # Errors
-    /// Never: there are no keys but strings, and memory can always be written.
-    pub fn to_geojson(&self) -> Result<Vec<u8>, serde_json::Error> {
+    /// When it cannot be written.
+    pub fn write_geojson(&self, out: &mut impl Write) -> Result<(), serde_json::Error> {
         let parts = cut(&by_way_of_poles(&self.vertices));
         let mut properties = json!({
             "name": self.name(),
@@ -39,7 +41,7 @@ impl Track<'_> {
         for point in &self.points {
             features.push(feature(Geometry::new_point(point.place.position()), point)?);
         }
-        serde_json::to_vec(&FeatureCollection::new(features))
+        serde_json::to_writer(out, &FeatureCollection::new(features))
     }
 }
 

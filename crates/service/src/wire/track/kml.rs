@@ -1,6 +1,6 @@
 //! KML 2.2 (OGC 07-147r2), with the `gx:Track` of Google's extension: a placemark for the track, one for every point.
 
-use std::io;
+use std::io::{self, Write};
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::{NamedPoint, Track, Vertex};
 
-type Xml = Writer<Vec<u8>>;
+type Xml<'a> = Writer<&'a mut dyn Write>;
 
 impl Track<'_> {
     /// A document: with an epoch a track with an instant a vertex, without one a line; then the points.
@@ -17,11 +17,9 @@ impl Track<'_> {
     /// come as U+FFFD.
     ///
     /// # Errors
-    /// Never: memory can always be written.
-    pub fn to_kml(&self) -> Result<Vec<u8>, serde_json::Error> {
-        let mut xml = Writer::new(Vec::new());
-        self.write(&mut xml).map_err(serde_json::Error::io)?;
-        Ok(xml.into_inner())
+    /// When it cannot be written.
+    pub fn write_kml(&self, out: &mut dyn Write) -> Result<(), serde_json::Error> {
+        self.write(&mut Writer::new(out)).map_err(serde_json::Error::io)
     }
 
     fn write(&self, xml: &mut Xml) -> io::Result<()> {

@@ -1,0 +1,152 @@
+//! A connection: HTTP/1.1 over TCP, with a client that may be slow, silent, or speak something else.
+
+use std::io::{self, IoSlice};
+use std::pin::Pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::task::{Context, Poll, ready};
+use std::time::Duration;
+
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::TcpStream;
+use tokio::time::{Instant, Sleep, sleep};
+
+use crate::memory::Memory;
+
+/// The slowest that a client may take a long answer, bytes a second.
+const SLOWEST: f64 = 16_384.0;
+
+/// How often an answer that is not taken is looked after; how long it is waited for where memory is short.
+const TICK: Duration = Duration::from_secs(1);
+
+/// A stream of bytes that gives a client up that does not take what is sent to it.
+#[derive(Debug)]
+pub struct PatientStream {
+    stream: TcpStream,
+    memory: Arc<Memory>,
+    /// How long nothing may be taken.
+    patience: Duration,
+    stall: Option<Stall>,
+    signs: Arc<Signs>,
+}
+
+/// What is known of the client.
+#[derive(Debug, Default)]
+pub struct Signs {
+    has_spoken: AtomicBool,
+    has_stalled: AtomicBool,
+}
+
+impl Signs {
+    /// Whether anything has come from it.
+    pub fn has_spoken(&self) -> bool {
+        self.has_spoken.load(Ordering::Relaxed)
+    }
+
+    /// Whether it was given up, as it took nothing.
+    pub fn has_stalled(&self) -> bool {
+        self.has_stalled.load(Ordering::Relaxed)
+    }
+}
+
+/// An answer of which the system takes no more, as its client takes nothing.
+#[derive(Debug)]
+struct Stall {
+    since: Instant,
+    /// Bytes that were taken since.
+    taken: usize,
+    tick: Pin<Box<Sleep>>,
+}
+
+impl PatientStream {
+    /// The stream of a client that may take nothing for so long.
+    pub fn new(stream: TcpStream, patience: Duration, memory: Arc<Memory>) -> Self {
+        Self { stream, memory, patience, stall: None, signs: Arc::default() }
+    }
+
+    /// What will be known of the client.
+    pub fn signs(&self) -> Arc<Signs> {
+        Arc::clone(&self.signs)
+    }
+
+    /// What comes of an attempt to write so many bytes.
+    fn judge(
+        &mut self,
+        context: &mut Context,
+        wanted: usize,
+        attempt: Poll<io::Result<usize>>,
+    ) -> Poll<io::Result<usize>> {
+        match attempt {
+            Poll::Ready(Ok(taken)) if taken < wanted => {
+                if let Some(stall) = &mut self.stall {
+                    stall.taken += taken;
+                }
+                attempt
+            }
+            Poll::Ready(_) => {
+                self.stall = None;
+                attempt
+            }
+            Poll::Pending => self.wait(context).map(Err),
+        }
+    }
+
+    /// Waits for the client; ready when it is given up.
+    #[expect(clippy::cast_precision_loss, reason = "an answer has far less than 2^52 bytes")]
+    fn wait(&mut self, context: &mut Context) -> Poll<io::Error> {
+        let stall =
+            self.stall.get_or_insert_with(|| Stall { since: Instant::now(), taken: 0, tick: Box::pin(sleep(TICK)) });
+        loop {
+            ready!(stall.tick.as_mut().poll(context));
+            let patience = if self.memory.is_tight() { TICK.min(self.patience) } else { self.patience };
+            let allowed = patience + Duration::from_secs_f64(stall.taken as f64 / SLOWEST);
+            if stall.since.elapsed() >= allowed {
+                self.signs.has_stalled.store(true, Ordering::Relaxed);
+                // What the system still holds for this client goes with the connection. An error: there is no connection any more.
+                let _ = self.stream.set_zero_linger();
+                return Poll::Ready(io::Error::new(io::ErrorKind::TimedOut, "the client takes nothing"));
+            }
+            let rest = allowed.saturating_sub(stall.since.elapsed());
+            stall.tick.as_mut().reset(Instant::now() + rest.min(TICK));
+        }
+    }
+}
+
+impl AsyncRead for PatientStream {
+    fn poll_read(mut self: Pin<&mut Self>, context: &mut Context, buffer: &mut ReadBuf) -> Poll<io::Result<()>> {
+        let before = buffer.filled().len();
+        let result = Pin::new(&mut self.stream).poll_read(context, buffer);
+        if buffer.filled().len() > before {
+            self.signs.has_spoken.store(true, Ordering::Relaxed);
+        }
+        result
+    }
+}
+
+impl AsyncWrite for PatientStream {
+    fn poll_write(mut self: Pin<&mut Self>, context: &mut Context, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        let attempt = Pin::new(&mut self.stream).poll_write(context, bytes);
+        self.judge(context, bytes.len(), attempt)
+    }
+
+    fn poll_write_vectored(
+        mut self: Pin<&mut Self>,
+        context: &mut Context,
+        slices: &[IoSlice],
+    ) -> Poll<io::Result<usize>> {
+        let attempt = Pin::new(&mut self.stream).poll_write_vectored(context, slices);
+        self.judge(context, slices.iter().map(|slice| slice.len()).sum(), attempt)
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.stream.is_write_vectored()
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_shutdown(context)
+    }
+}
