@@ -19,6 +19,8 @@ mod batch;
 mod convert;
 mod events;
 mod heating;
+mod limits;
+mod metrics;
 mod models;
 mod nesc;
 mod output;

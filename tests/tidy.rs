@@ -20,8 +20,8 @@ const CORE: [&[&str]; 11] = [
 
 /// The levels of the service.
 const SERVICE: [&[&str]; 10] = [
-    &["wire", "config", "memory", "metrics", "coding", "telemetry"],
-    &["error", "connection", "client"],
+    &["wire", "config", "memory", "metrics", "coding"],
+    &["error", "connection", "client", "telemetry"],
     &["compute", "embedded", "format", "openapi", "rate"],
     &["state"],
     &["middleware", "answer"],

@@ -242,7 +242,10 @@ async fn pages_of_other_origins_may_call_and_see_the_headers() {
     for path in ["/simulate", "/simulate?x=1"] {
         let answer = post(&service, path, &[("origin", b"https://example.org")]).await;
         assert_eq!(list(&answer, "access-control-allow-origin"), ["*"]);
-        assert_eq!(list(&answer, "access-control-expose-headers"), ["x-request-id", "retry-after"]);
+        assert_eq!(
+            list(&answer, "access-control-expose-headers"),
+            ["x-request-id", "retry-after", "ratelimit-policy", "ratelimit"]
+        );
     }
 }
 

@@ -1,0 +1,178 @@
+//! What the service counts, beside what its answers say.
+
+#![expect(clippy::float_cmp, reason = "what is counted is a whole number")]
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::body::Body;
+use axum::http::{Request, header};
+use http_body_util::BodyExt;
+use reentry_service::config::Config;
+use reentry_service::state::AppState;
+use reentry_service::telemetry::LostLines;
+use reentry_tests::service::Service;
+use serde_json::{Value, json};
+use tower::ServiceExt;
+
+use super::problems::{endless, free_again};
+use super::requests::{capsule, with};
+
+/// Every line of the metrics: name with labels, and value.
+async fn metrics(service: &Service) -> BTreeMap<String, f64> {
+    let answer = service.get("/metrics").await;
+    assert_eq!(answer.status, 200);
+    assert_eq!(answer.headers["content-type"], "application/openmetrics-text; version=1.0.0; charset=utf-8");
+    read(std::str::from_utf8(&answer.body).unwrap())
+}
+
+fn read(text: &str) -> BTreeMap<String, f64> {
+    assert!(text.ends_with("# EOF\n"), "{text}");
+    let samples = text.lines().filter(|line| !line.starts_with('#'));
+    let sample = |line: &str| {
+        let (name, value) = line.rsplit_once(' ').unwrap();
+        (name.to_owned(), value.parse().unwrap())
+    };
+    samples.map(sample).collect()
+}
+
+fn count(metrics: &BTreeMap<String, f64>, name: &str) -> f64 {
+    metrics.get(name).copied().unwrap_or_else(|| panic!("no {name} in {metrics:#?}"))
+}
+
+#[tokio::test]
+async fn requests_are_counted_by_route_and_outcome() {
+    let service = Service::new();
+    service.post("/simulate", &capsule()).await;
+    service.post("/simulate", &capsule()).await;
+    service.post("/simulate", &json!({})).await;
+    service.post_text("/convert", "{").await;
+    service.get("/simulate").await;
+    service.get("/no/such/path/whatever").await;
+    service.get("/docs/index.html").await;
+    let metrics = metrics(&service).await;
+    for (route, outcome, requests) in [
+        ("/simulate", "ok", 2.0),
+        ("/simulate", "invalid-case", 1.0),
+        ("/simulate", "method-not-allowed", 1.0),
+        ("/convert", "invalid-json", 1.0),
+        ("other", "not-found", 1.0),
+        ("/docs/{*name}", "ok", 1.0),
+    ] {
+        let labels = format!("{{route=\"{route}\",outcome=\"{outcome}\"}}");
+        assert_eq!(count(&metrics, &format!("reentry_requests_total{labels}")), requests, "{labels}");
+        assert_eq!(count(&metrics, &format!("reentry_request_duration_seconds_count{labels}")), requests, "{labels}");
+    }
+    assert_eq!(count(&metrics, "reentry_requests_in_flight{route=\"/simulate\"}"), 0.0);
+    // This one.
+    assert_eq!(count(&metrics, "reentry_requests_in_flight{route=\"/metrics\"}"), 1.0);
+    // A client cannot make series: nothing that it has written is a label.
+    assert!(!metrics.keys().any(|name| name.contains("whatever")), "{metrics:#?}");
+}
+
+#[tokio::test]
+async fn what_a_flight_costs_is_what_its_answer_says() {
+    let service = Service::new();
+    let request = with(&capsule(), "/output", json!({"count": 123}));
+    let sent = request.to_string().len();
+    let answer = service.post("/simulate", &request).await;
+    let solver = answer.json()["solver"].clone();
+    let metrics = metrics(&service).await;
+    let of = |name: &str| count(&metrics, &format!("reentry_{name}{{route=\"/simulate\"}}"));
+    let said = |name: &str| solver[name].as_f64().unwrap();
+    assert!(said("steps") > 10.0);
+    assert_eq!(of("integration_steps_total"), said("steps"));
+    assert_eq!(of("integration_steps_rejected_total"), said("rejected_steps"));
+    assert_eq!(of("evaluations_total"), said("evaluations"));
+    assert_eq!(of("rows_total"), 123.0);
+    assert_eq!(of("request_bytes_total") as usize, sent);
+    assert_eq!(of("response_bytes_total") as usize, answer.body.len());
+    assert_eq!(of("compute_seconds_count"), 1.0);
+    assert_eq!(of("queue_wait_seconds_count"), 1.0);
+    // The job has all of the flight in it, and the request all of the job.
+    assert!(of("compute_seconds_sum") >= said("elapsed"));
+    let request = count(&metrics, "reentry_request_duration_seconds_sum{route=\"/simulate\",outcome=\"ok\"}");
+    assert!(request >= of("compute_seconds_sum") + of("queue_wait_seconds_sum"));
+}
+
+#[tokio::test]
+async fn the_cases_of_a_batch_are_counted_by_outcome() {
+    let service = Service::new();
+    let answer = service.post("/simulate/batch", &json!([capsule(), 1, capsule()])).await;
+    let lines: Vec<Value> =
+        answer.body.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect();
+    let metrics = metrics(&service).await;
+    assert_eq!(count(&metrics, "reentry_batch_cases_total{outcome=\"ok\"}"), 2.0);
+    assert_eq!(count(&metrics, "reentry_batch_cases_total{outcome=\"invalid-case\"}"), 1.0);
+    let steps = lines[0]["solver"]["steps"].as_f64().unwrap();
+    assert_eq!(count(&metrics, "reentry_integration_steps_total{route=\"/simulate/batch\"}"), 2.0 * steps);
+}
+
+#[tokio::test]
+async fn jobs_that_are_given_up_are_counted_by_cause() {
+    let config = Config { workers: 1, queue: 3, deadline: Duration::from_millis(200), ..Config::default() };
+    let app = AppState::new(config, LostLines::default()).unwrap();
+    let count = |name: &str| count(&read(&app.metrics.text(app.now()).unwrap()), name);
+    let client = {
+        let compute = Arc::clone(&app.compute);
+        tokio::spawn(async move { compute.run("/simulate", endless).await })
+    };
+    free_again(|| async { count("reentry_jobs_running") == 1.0 }).await;
+    let waiting = {
+        let compute = Arc::clone(&app.compute);
+        tokio::spawn(async move { compute.run("/convert", |_| Ok(())).await })
+    };
+    free_again(|| async { count("reentry_jobs_queued") == 1.0 }).await;
+    waiting.abort();
+    client.abort();
+    free_again(|| async { count("reentry_jobs_running") == 0.0 && count("reentry_jobs_queued") == 0.0 }).await;
+    assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"disconnect\"}"), 1.0);
+    assert_eq!(count("reentry_cancellations_total{route=\"/convert\",cause=\"disconnect\"}"), 1.0);
+    assert!(app.compute.run("/simulate", endless).await.is_err());
+    free_again(|| async { count("reentry_jobs_running") == 0.0 }).await;
+    assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"deadline\"}"), 1.0);
+}
+
+#[tokio::test]
+async fn answers_are_held_until_they_are_taken_and_a_full_memory_refuses_more() {
+    let config = Config { memory: 1000, body_limit: 1000, batch_body_limit: 1000, ..Config::default() };
+    let app = AppState::new(config, LostLines::default()).unwrap();
+    let router = reentry_service::app(app.clone());
+    let request = || {
+        let body = with(&capsule(), "/output", json!({"trajectory": false})).to_string();
+        let request = Request::post("/simulate").header(header::CONTENT_TYPE, "application/json");
+        request.body(Body::from(body)).unwrap()
+    };
+    let Ok(first) = router.clone().oneshot(request()).await;
+    assert_eq!(first.status(), 200);
+    let held = app.memory.held();
+    assert!(held > 1000, "{held}");
+    let Ok(second) = router.clone().oneshot(request()).await;
+    assert_eq!(second.status(), 503);
+    let body = first.into_body().collect().await.unwrap().to_bytes();
+    assert_eq!(body.len(), held);
+    drop(body);
+    assert_eq!(app.memory.held(), 0);
+    let Ok(third) = router.oneshot(request()).await;
+    assert_eq!(third.status(), 200);
+}
+
+#[tokio::test]
+async fn an_answer_that_is_not_taken_to_its_end_is_abandoned() {
+    let app = AppState::new(Config::default(), LostLines::default()).unwrap();
+    let router = reentry_service::app(app.clone());
+    let request = Request::get("/openapi.json").body(Body::empty()).unwrap();
+    let Ok(answer) = router.oneshot(request).await;
+    drop(answer);
+    let metrics = read(&app.metrics.text(app.now()).unwrap());
+    assert_eq!(count(&metrics, "reentry_requests_total{route=\"/openapi.json\",outcome=\"abandoned\"}"), 1.0);
+    assert_eq!(count(&metrics, "reentry_requests_in_flight{route=\"/openapi.json\"}"), 0.0);
+    assert_eq!(count(&metrics, "reentry_held_bytes"), 0.0);
+}
+
+#[tokio::test]
+async fn metrics_with_an_address_of_their_own_are_nowhere_else() {
+    let config = Config { metrics_listen: Some(([127, 0, 0, 1], 9100).into()), ..Config::default() };
+    assert_eq!(Service::with(config).get("/metrics").await.status, 404);
+}
