@@ -75,6 +75,7 @@ async fn requests_are_counted_by_route_and_outcome() {
 async fn what_a_flight_costs_is_what_its_answer_says() {
     let service = Service::new();
     let request = with(&capsule(), "/output", json!({"count": 123}));
+    let bytes = |count| u32::try_from(count).map(f64::from).unwrap();
     let sent = request.to_string().len();
     let answer = service.post("/simulate", &request).await;
     let solver = answer.json()["solver"].clone();
@@ -86,8 +87,8 @@ async fn what_a_flight_costs_is_what_its_answer_says() {
     assert_eq!(of("integration_steps_rejected_total"), said("rejected_steps"));
     assert_eq!(of("evaluations_total"), said("evaluations"));
     assert_eq!(of("rows_total"), 123.0);
-    assert_eq!(of("request_bytes_total") as usize, sent);
-    assert_eq!(of("response_bytes_total") as usize, answer.body.len());
+    assert_eq!(of("request_bytes_total"), bytes(sent));
+    assert_eq!(of("response_bytes_total"), bytes(answer.body.len()));
     assert_eq!(of("compute_seconds_count"), 1.0);
     assert_eq!(of("queue_wait_seconds_count"), 1.0);
     // The job has all of the flight in it, and the request all of the job.

@@ -80,11 +80,11 @@ def wait_for(condition):
 class Service:
     """A running `reentry serve`."""
 
-    def __init__(self, directory, *flags):
+    def __init__(self, directory, *flags, port=0):
         self.log = directory / "stderr"
         with self.log.open("w") as log:
             self.process = subprocess.Popen(
-                [BINARY, "serve", "--listen", "127.0.0.1:0", *flags], env=clean_environment(), stderr=log
+                [BINARY, "serve", "--listen", f"127.0.0.1:{port}", *flags], env=clean_environment(), stderr=log
             )
         self.port = wait_for(self._port)
         self.url = f"http://127.0.0.1:{self.port}"
@@ -153,8 +153,8 @@ def start(tmp_path_factory):
     """Starts services with flags; they end with the test."""
     services = []
 
-    def start(*flags):
-        services.append(Service(tmp_path_factory.mktemp("service"), *flags))
+    def start(*flags, port=0):
+        services.append(Service(tmp_path_factory.mktemp("service"), *flags, port=port))
         return services[-1]
 
     yield start

@@ -81,7 +81,7 @@ def test_killed_under_load_it_starts_again_at_the_same_address(start):
     service.process.wait()
     for client in clients:
         client.join(PATIENCE)
-    again = start("--listen", f"127.0.0.1:{service.port}")
+    again = start(port=service.port)
     assert again.port == service.port
     assert again.simulate(SHORT).status == 200
 

@@ -10,7 +10,7 @@ use reentry_service::config::Config;
 use reentry_service::serve::{serve, stop_signal};
 use reentry_service::state::AppState;
 use reentry_service::telemetry::Log;
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpSocket};
 
 fn main() -> ExitCode {
     let result = Cli::parse().command.run(run);
@@ -25,11 +25,8 @@ fn run(config: Config) -> Result<(), Failure> {
 
 #[tokio::main]
 async fn listen(config: Config, log: &Log) -> io::Result<()> {
-    let listener = bind(config.listen).await?;
-    let metrics = match config.metrics_listen {
-        Some(address) => Some(bind(address).await?),
-        None => None,
-    };
+    let listener = bind(config.listen)?;
+    let metrics = config.metrics_listen.map(bind).transpose()?;
     let state = AppState::new(config, log.lost_lines())?;
     let stop = stop_signal()?;
     tracing::info!("listening on http://{}", listener.local_addr()?);
@@ -40,7 +37,17 @@ async fn listen(config: Config, log: &Log) -> io::Result<()> {
     Ok(())
 }
 
-async fn bind(address: SocketAddr) -> io::Result<TcpListener> {
-    let told = |error: io::Error| io::Error::new(error.kind(), format!("cannot listen on {address}: {error}"));
-    TcpListener::bind(address).await.map_err(told)
+/// Connections that the system may establish before they are accepted; Linux may allow fewer. With the usual 128, clients that come all at
+/// once are left to try again after a second.
+const BACKLOG: u32 = 4096;
+
+fn bind(address: SocketAddr) -> io::Result<TcpListener> {
+    let socket = if address.is_ipv4() { TcpSocket::new_v4() } else { TcpSocket::new_v6() };
+    let listener = socket.and_then(|socket| {
+        // A service that starts again has its address at once.
+        socket.set_reuseaddr(true)?;
+        socket.bind(address)?;
+        socket.listen(BACKLOG)
+    });
+    listener.map_err(|error| io::Error::new(error.kind(), format!("cannot listen on {address}: {error}")))
 }

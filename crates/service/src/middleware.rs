@@ -2,7 +2,7 @@
 //! browser may do with the answer.
 
 use std::pin::Pin;
-use std::task::{Context, Poll};
+use std::task::{Context, Poll, ready};
 use std::time::Instant;
 
 use axum::body::{Body, Bytes, HttpBody};
@@ -56,7 +56,7 @@ pub async fn observe(State(app): State<AppState>, request: Request, next: Next) 
         response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
     }
     line.is_complete = has_no_body || response.body().is_end_stream();
-    response.map(|body| Body::new(Observed { body, line }))
+    response.map(|body| Body::new(Observed { body, rest: Bytes::new(), line }))
 }
 
 /// Up to 128 visible ASCII characters.
@@ -100,33 +100,55 @@ impl Drop for Line {
     }
 }
 
-/// The body of an answer, until its end.
+/// The body of an answer, until its end, in pieces: how far a client has taken it is known to a piece.
 struct Observed {
     body: Body,
+    /// Of a frame of the body, what has not been sent yet.
+    rest: Bytes,
     line: Line,
 }
+
+/// Bytes of a piece.
+const PIECE: usize = 1 << 16;
 
 impl HttpBody for Observed {
     type Data = Bytes;
     type Error = axum::Error;
 
     fn poll_frame(mut self: Pin<&mut Self>, context: &mut Context) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
-        let frame = Pin::new(&mut self.body).poll_frame(context);
-        match &frame {
-            Poll::Ready(Some(Ok(frame))) => self.line.sent += frame.data_ref().map_or(0, Bytes::len) as u64,
-            Poll::Ready(None) => self.line.is_complete = true,
-            _ => {}
+        if self.rest.is_empty() {
+            match ready!(Pin::new(&mut self.body).poll_frame(context)) {
+                Some(Ok(frame)) => match frame.into_data() {
+                    Ok(data) => self.rest = data,
+                    Err(other) => return Poll::Ready(Some(Ok(other))),
+                },
+                Some(Err(error)) => return Poll::Ready(Some(Err(error))),
+                None => {
+                    self.line.is_complete = true;
+                    return Poll::Ready(None);
+                }
+            }
         }
-        self.line.is_complete |= self.body.is_end_stream();
-        frame
+        let length = self.rest.len().min(PIECE);
+        let piece = self.rest.split_to(length);
+        self.line.sent += length as u64;
+        self.line.is_complete |= self.is_end_stream();
+        Poll::Ready(Some(Ok(Frame::data(piece))))
     }
 
     fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
+        self.rest.is_empty() && self.body.is_end_stream()
     }
 
     fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
+        let rest = self.rest.len() as u64;
+        let body = self.body.size_hint();
+        let mut both = SizeHint::new();
+        both.set_lower(body.lower() + rest);
+        if let Some(upper) = body.upper() {
+            both.set_upper(upper + rest);
+        }
+        both
     }
 }
 
