@@ -280,6 +280,85 @@ async fn schema_and_service_refuse_the_same_events_and_heating() {
 }
 
 #[tokio::test]
+async fn schema_and_service_ask_the_same_of_the_case_of_a_theory() {
+    let mut agreement = Agreement::new();
+    let (_, theory) = shown("/analytic").remove(0);
+    for solution in ["shallow_glide", "loh", "steep_glide", "steep_ballistic", "medium_glide"] {
+        let theory = with(&theory, "/solution", solution);
+        for lift in [0.0, 0.2, -0.2] {
+            for aerodynamics in [
+                json!({"type": "constant", "lift_coefficient": lift, "drag_coefficient": 0.2}),
+                json!({"type": "constant", "drag_coefficient": 0.2}),
+                json!({"type": "ballistic", "lift_to_drag": lift, "ballistic_coefficient": 100}),
+                json!({"type": "ballistic", "ballistic_coefficient": 100}),
+            ] {
+                let request = with(&theory, "/vehicle/aerodynamics", aerodynamics.clone());
+                let request = if aerodynamics["type"] == "ballistic" {
+                    without(&request, "/vehicle/reference_area")
+                } else {
+                    request
+                };
+                agreement.agree("/analytic", &request, &format!("{solution} with {aerodynamics}")).await;
+            }
+        }
+        for (pointer, value) in [
+            ("/vehicle/aerodynamics/drag_coefficient", json!(0)),
+            ("/vehicle/aerodynamics", json!({"type": "mach_table", "mach": [1], "drag_coefficient": [1]})),
+            ("/vehicle/reference_area", json!(0)),
+            ("/atmosphere", json!({"type": "us76"})),
+            ("/atmosphere", json!({"type": "vacuum"})),
+            ("/atmosphere", json!({"type": "exponential", "surface_density": 0, "scale_height": 7000})),
+            ("/density_factor", json!(0)),
+            ("/output", json!({"trajectory": false})),
+            ("/output", json!({"count": 2, "columns": ["time"]})),
+        ] {
+            let request = with(&theory, pointer, value.clone());
+            agreement.refused("/analytic", &request, &format!("{solution} with {value} at {pointer}")).await;
+        }
+    }
+    agreement.holds(100);
+}
+
+#[tokio::test]
+async fn what_is_echoed_has_the_same_answer() {
+    let service = Service::new();
+    for (path, request, _) in ENDPOINTS {
+        let schema = schema(request);
+        for (name, request) in good_requests(path) {
+            let mut first = service.post(path, &with(&request, "/echo", true)).await.json();
+            is_valid(&schema, &first["case"], &name);
+            let mut second = service.post(path, &first["case"]).await.json();
+            for answer in [&mut first, &mut second] {
+                if let Some(time) = answer.pointer_mut("/solver/elapsed") {
+                    *time = json!(0);
+                }
+            }
+            assert_eq!(first, second, "{name}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn every_answer_has_the_headers_of_the_document() {
+    let service = Service::new();
+    let document = document();
+    for (path, answer) in [
+        ("/simulate", service.post("/simulate", &flight("ecef")).await),
+        ("/simulate", service.post("/simulate", &json!({})).await),
+        ("/simulate", service.get("/simulate").await),
+        ("/health/live", service.post_text("/health/live", "").await),
+    ] {
+        let method = if path == "/simulate" { "post" } else { "get" };
+        let response = &document["paths"][path][method]["responses"][answer.status.as_str()];
+        let headers = response["headers"].as_object().unwrap();
+        assert!(headers.contains_key("x-request-id"), "{path} {}", answer.status);
+        for name in headers.keys() {
+            assert!(answer.headers.contains_key(name), "{path} {}: {name}", answer.status);
+        }
+    }
+}
+
+#[tokio::test]
 async fn schema_and_service_ask_for_exactly_one_alternative() {
     let mut agreement = Agreement::new();
     for (path, request, place) in

@@ -74,15 +74,23 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
             ("/validation", "get", json!(["json"])),
         ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut(method)) {
-                add_failures(operation, method);
+                // A request without a body has no fault of one.
+                add_failures(operation, |status| method == "post" || !["408", "413", "415", "422"].contains(&status));
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
             }
         }
+        for path in ["/health/live", "/health/ready"] {
+            add_failures(&mut paths[path]["get"], |status| status == "405");
+        }
         add_examples(paths);
+        add_headers(paths);
+        add_links(paths);
         let cases = &mut paths["/simulate/batch"]["post"]["requestBody"]["content"]["application/json"]["schema"];
         cases["minItems"] = json!(1);
         cases["maxItems"] = json!(MOST_CASES);
     }
+    document["components"]["headers"] = headers();
+    name_constants(&mut document);
     document
 }
 
@@ -141,11 +149,12 @@ fn close(name: &str, schema: &mut Map<String, Value>) {
     schema.insert("additionalProperties".to_owned(), json!(false));
     let one = |field: &&str| json!({"required": [field]});
     let of_name = ALTERNATIVES.iter().filter(|(of, _)| *of == name);
-    let mut choices: Vec<Value> = of_name.map(|(_, fields)| fields.iter().map(one).collect()).collect();
-    if choices.len() == 1 {
-        schema.insert("oneOf".to_owned(), choices.remove(0));
-    } else if !choices.is_empty() {
-        schema.insert("allOf".to_owned(), choices.into_iter().map(|choice| json!({"oneOf": choice})).collect());
+    let choice = |(_, fields): &(_, &[_])| json!({"oneOf": fields.iter().map(one).collect::<Vec<_>>()});
+    // Within `allOf`: an object with a `oneOf` of its own is a union to those who make clients, and they lose its fields.
+    let mut all: Vec<Value> = of_name.map(choice).collect();
+    all.extend(parallel_conditions(name));
+    if !all.is_empty() {
+        schema.insert("allOf".to_owned(), json!(all));
     }
     refine(name, schema);
     for (keyword, condition) in conditions(name) {
@@ -172,14 +181,6 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
                 ("else", json!({"properties": absent})),
             ]
         }
-        "ZonalGravity" => {
-            let below = |degree: usize, name: &str| {
-                json!({"if": {"properties": {"degree": {"exclusiveMaximum": degree}}},
-                    "then": {"properties": {(name): false}}})
-            };
-            // Without a degree it is 2, and the condition holds.
-            vec![("allOf", json!([below(3, "j3"), below(4, "j4")]))]
-        }
         "Vehicle" => vec![
             ("if", json!({"properties": {"aerodynamics": is("type", "ballistic")}})),
             ("then", json!({"properties": {"reference_area": false}})),
@@ -188,33 +189,11 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
         "SimulateRequest" => {
             vec![("dependentSchemas", json!({"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}))]
         }
-        // The theories know neither, but an empty list is no event.
-        "AnalyticRequest" => {
-            vec![("allOf", json!([{"properties": {"heating": false, "events": {"maxItems": 0}}}]))]
-        }
+        "AnalyticRequest" => vec![("dependentSchemas", json!({"solution": theory()}))],
         "Effect" => vec![(
             "dependentSchemas",
             json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
         )],
-        "Condition" => {
-            let of = |quantity: &str, bounds: Value| {
-                let both = json!({"properties": {"falls_through": bounds, "rises_through": bounds}});
-                json!({"if": is("quantity", quantity), "then": both})
-            };
-            let not_negative = json!({"minimum": 0});
-            let time = json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}});
-            let quantities = [
-                of("time", json!({"minimum": 0, "maximum": 1e9})),
-                time,
-                of("altitude", json!({"minimum": -1e12, "maximum": 1e12})),
-                of("speed", json!({"minimum": 0, "maximum": 1e6})),
-                of("mach", not_negative.clone()),
-                of("dynamic_pressure", not_negative.clone()),
-                of("load_factor", not_negative),
-                of("flight_path_angle", json!({"minimum": -90, "maximum": 90})),
-            ];
-            vec![("allOf", json!(quantities))]
-        }
         "Schedule" => {
             let at = |bound: Value| json!({"properties": {"at": {"items": bound}}});
             vec![
@@ -233,6 +212,63 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
                 ("then", json!({"oneOf": Output::WAYS.map(|way| json!({"required": [way]}))})),
                 ("else", columns),
                 ("dependentSchemas", json!({"trajectory": without})),
+            ]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// What every theory asks of its case: constant coefficients, exponential air, the rows of a flight; and lift, or none.
+fn theory() -> Value {
+    let positive = json!({"exclusiveMinimum": 0});
+    let constant = json!({"type": {"enum": ["constant", "ballistic"]}, "drag_coefficient": positive});
+    let aerodynamics = |schema: Value| json!({"vehicle": {"properties": {"aerodynamics": schema}}});
+    let lift = |bound: Value| json!({"lift_coefficient": bound, "lift_to_drag": bound});
+    let some = json!({
+        "properties": lift(json!({"not": {"const": 0}})),
+        "anyOf": [{"required": ["lift_coefficient"]}, {"required": ["lift_to_drag"]}],
+    });
+    json!({
+        "properties": {
+            "atmosphere": {"properties": {"type": {"const": "exponential"}, "surface_density": positive}},
+            "density_factor": positive,
+            "vehicle": {"properties": {"reference_area": positive, "aerodynamics": {"properties": constant}}},
+            "output": {"properties": {"trajectory": false, "columns": false}},
+        },
+        "if": {"properties": {"solution": {"const": "steep_ballistic"}}},
+        "then": {"properties": aerodynamics(json!({"properties": lift(json!({"const": 0}))}))},
+        "else": {"properties": aerodynamics(some)},
+    })
+}
+
+/// Those that stand side by side, as a schema has one `if`.
+fn parallel_conditions(name: &str) -> Vec<Value> {
+    let is = |field: &str, value: &str| json!({"properties": {(field): {"const": value}}, "required": [field]});
+    match name {
+        "ZonalGravity" => {
+            let below = |degree: usize, name: &str| {
+                json!({"if": {"properties": {"degree": {"exclusiveMaximum": degree}}},
+                    "then": {"properties": {(name): false}}})
+            };
+            // Without a degree it is 2, and the condition holds.
+            vec![below(3, "j3"), below(4, "j4")]
+        }
+        "Condition" => {
+            let of = |quantity: &str, bounds: Value| {
+                let both = json!({"properties": {"falls_through": bounds, "rises_through": bounds}});
+                json!({"if": is("quantity", quantity), "then": both})
+            };
+            let not_negative = json!({"minimum": 0});
+            let time = json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}});
+            vec![
+                of("time", json!({"minimum": 0, "maximum": 1e9})),
+                time,
+                of("altitude", json!({"minimum": -1e12, "maximum": 1e12})),
+                of("speed", json!({"minimum": 0, "maximum": 1e6})),
+                of("mach", not_negative.clone()),
+                of("dynamic_pressure", not_negative.clone()),
+                of("load_factor", not_negative),
+                of("flight_path_angle", json!({"minimum": -90, "maximum": 90})),
             ]
         }
         _ => Vec::new(),
@@ -273,9 +309,9 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("drag_coefficient/items", row(&json!({"type": "number", "minimum": 0}))),
         ],
         "Schedule" => vec![("type", json!({"enum": ["schedule"]})), ("value/items", turn)],
-        "SimulateRequest" | "ConvertRequest" | "AnalyticRequest" => {
-            vec![("epoch", json!({"pattern": RFC3339_PATTERN}))]
-        }
+        // The theories know no events, but an empty list is none.
+        "AnalyticRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN})), ("events", json!({"maxItems": 0}))],
+        "SimulateRequest" | "ConvertRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN}))],
         _ => Vec::new(),
     };
     for (path, refinement) in refinements {
@@ -286,16 +322,73 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
     }
 }
 
-fn add_failures(operation: &mut Value, method: &str) {
-    for (status, description) in FAILURES {
-        // A request without a body has no fault of one.
-        if method == "get" && ["408", "413", "415", "422"].contains(&status) {
-            continue;
-        }
+fn add_failures(operation: &mut Value, may_fail: impl Fn(&str) -> bool) {
+    for (status, description) in FAILURES.into_iter().filter(|(status, _)| may_fail(status)) {
         operation["responses"][status] = json!({
             "description": description,
             "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
         });
+    }
+}
+
+/// The headers that answers have.
+fn headers() -> Value {
+    let header = |description, schema| json!({"description": description, "required": true, "schema": schema});
+    json!({
+        "RequestId": header(
+            "Names the request, as in the log: what the request's own `x-request-id` says or, without one that is sound, a new name.",
+            json!({"type": "string", "pattern": "^[!-~]{1,128}$"}),
+        ),
+        "RetryAfter": header("In how many seconds to come back.", json!({"type": "integer", "minimum": 1})),
+        "Allow": header("The methods that the path knows.", json!({"type": "string"})),
+    })
+}
+
+fn add_headers(paths: &mut Map<String, Value>) {
+    let operations = paths.values_mut().filter_map(Value::as_object_mut).flat_map(Map::values_mut);
+    for responses in operations.filter_map(|operation| operation["responses"].as_object_mut()) {
+        for (status, response) in responses {
+            let mut headers = vec![("x-request-id", "RequestId")];
+            let is_problem = response["content"].get("application/problem+json").is_some();
+            match status.as_str() {
+                "405" => headers.push(("allow", "Allow")),
+                // Not that of `/health/ready`: who watches comes back anyway.
+                "503" if is_problem => headers.push(("retry-after", "RetryAfter")),
+                _ => {}
+            }
+            for (name, header) in headers {
+                response["headers"][name] = json!({"$ref": format!("#/components/headers/{header}")});
+            }
+        }
+    }
+}
+
+/// What is echoed can be sent again.
+fn add_links(paths: &mut Map<String, Value>) {
+    for path in ["/simulate", "/analytic", "/convert"] {
+        let operation = &mut paths[path]["post"];
+        let again = json!({
+            "operationId": operation["operationId"],
+            "requestBody": "$response.body#/case",
+            "description": "With `echo`: the request with every default filled in has the same answer.",
+        });
+        operation["responses"]["200"]["links"] = json!({"again": again});
+    }
+}
+
+/// Makes a constant of every choice of one, for which generators of clients would invent a type of its own.
+fn name_constants(value: &mut Value) {
+    match value {
+        Value::Object(map) => {
+            if let Some([only]) = map.get("enum").and_then(Value::as_array).map(Vec::as_slice) {
+                let only = only.clone();
+                map.remove("enum");
+                map.insert("const".to_owned(), only);
+            }
+            map.values_mut().for_each(name_constants);
+        }
+        Value::Array(array) => array.iter_mut().for_each(name_constants),
+        _ => {}
     }
 }
 

@@ -66,10 +66,11 @@ pub struct AnalyticRequest {
     pub case: SimulateRequest,
 }
 
-/// The fields of [`SimulateRequest`], whatever they are, and `solution`.
+/// The fields of [`SimulateRequest`], whatever they are, without `heating`, which the theories do not know, and with `solution`.
 impl PartialSchema for AnalyticRequest {
     fn schema() -> RefOr<Schema> {
-        let RefOr::T(Schema::Object(case)) = SimulateRequest::schema() else { return SimulateRequest::schema() };
+        let RefOr::T(Schema::Object(mut case)) = SimulateRequest::schema() else { return SimulateRequest::schema() };
+        case.properties.shift_remove("heating");
         let description = "A case to simulate, as for `/simulate`, and the theory to set beside it. \
                            `output` cannot be `{\"trajectory\": false}`: the predictions are made at the rows.";
         let solution = RefBuilder::new()
@@ -261,9 +262,9 @@ pub struct AnalyticResponse {
     pub verification: Option<Verification>,
     /// What the user should know.
     pub warnings: Vec<Warning>,
-    /// The request with every default filled in, with `echo`.
+    /// The request with every default filled in, with `echo`: it can be sent again.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Object)]
+    #[schema(required = false, value_type = AnalyticRequest)]
     pub case: Option<Value>,
 }
 

@@ -186,9 +186,9 @@ pub struct SimulateResponse {
     pub solver: SolverReport,
     /// What the user should know.
     pub warnings: Vec<Warning>,
-    /// The request with every default filled in, with `echo`.
+    /// The request with every default filled in, with `echo`: it can be sent again.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Object)]
+    #[schema(required = false, value_type = super::scenario::SimulateRequest)]
     pub case: Option<Value>,
 }
 

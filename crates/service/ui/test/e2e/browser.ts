@@ -6,7 +6,7 @@ import { type Browser, type BrowserContextOptions, chromium, type Page } from 'p
 import { expect } from 'vitest';
 import type { Case } from '../../src/api';
 
-const ROOT = new URL('../../../../../', import.meta.url);
+export const ROOT = new URL('../../../../../', import.meta.url);
 const PROGRAM = process.env.REENTRY ?? new URL('target/release/reentry', ROOT).pathname;
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
