@@ -1,0 +1,196 @@
+//! What is held of the service under a flood, and the table that shows it.
+
+use std::io::{self, Error};
+use std::time::Duration;
+
+use reentry_service::config::Config;
+use reentry_tests::loopback::{Connection, Program, percentile};
+
+use crate::flood::Flood;
+use crate::health::{Health, Recovery, ask_for};
+use crate::mix::{CASES, Kind, SHORT, Tally};
+
+/// How many times its unloaded value the p99 may be, beside what the queue is worth.
+const GREATEST_SLOWDOWN: f64 = 3.0;
+/// What `/health/live` may take at p99, ms.
+const GREATEST_HEALTH_P99: f64 = 20.0;
+/// What the recovery may take, s.
+const LONGEST_RECOVERY: f64 = 1.0;
+/// How many times its unloaded value the median of short requests may be when all is as before.
+const CALM: f64 = 2.0;
+/// How often a worker may hold the largest answer: as rows, as a text that grows, and as one that is sent.
+const ANSWER_COPIES: usize = 4;
+/// What a connection may hold, bytes: the buffers of its two directions and what is known of its request.
+const CONNECTION_MEMORY: usize = 64 << 10;
+/// Wrong answers that are printed of a flood.
+const PRINTED: usize = 5;
+
+/// How the service is without a flood.
+#[derive(Debug)]
+pub(crate) struct Usual {
+    /// Requests that it serves a second.
+    pub(crate) capacity: f64,
+    /// For each kind, one at a time.
+    tallies: Vec<Tally>,
+    health: Health,
+    /// Resident, bytes.
+    memory: u64,
+    workers: usize,
+    /// What the queue is worth, ms: the workers serve the mix at the capacity, and as many requests wait as may.
+    queue: f64,
+}
+
+impl Usual {
+    /// Asks each kind for a time.
+    #[expect(clippy::cast_precision_loss, reason = "a queue is far below 2^52")]
+    pub(crate) async fn measure(program: &Program, kinds: &[Kind], capacity: f64, time: Duration) -> io::Result<Self> {
+        let watch = Health::watch(program.address);
+        let mut connection = Connection::open(program.address).await?;
+        let mut tallies = Vec::new();
+        for kind in kinds {
+            let tally = ask_for(&mut connection, kind, time).await;
+            if let Some(wrong) = tally.wrong.first() {
+                return Err(Error::other(format!("without a flood, {wrong}")));
+            }
+            tallies.push(tally);
+        }
+        let config = Config::default();
+        let queue = 1e3 * config.queue as f64 / capacity;
+        let health = watch.stop().await?;
+        Ok(Self { capacity, tallies, health, memory: program.memory("VmRSS")?, workers: config.workers(), queue })
+    }
+
+    /// What the median of short requests may be when all is as before, ms.
+    pub(crate) fn calm(&self) -> f64 {
+        CALM * self.tallies[SHORT].percentile(50)
+    }
+
+    /// What the p99 of a kind may be, ms: who is accepted waits for those in the queue, and a batch does so with each of its cases.
+    #[expect(clippy::cast_precision_loss, reason = "cases are far below 2^52")]
+    fn latency_bar(&self, position: usize, kind: &Kind) -> f64 {
+        let turns = if kind.is_batch() { CASES as f64 } else { 1.0 };
+        GREATEST_SLOWDOWN * self.tallies[position].percentile(99) + turns * self.queue
+    }
+
+    /// What may be resident, bytes.
+    fn memory_bar(&self, connections: usize) -> u64 {
+        let largest = self.tallies.iter().map(|tally| tally.largest).max().unwrap_or(0);
+        self.memory + (ANSWER_COPIES * self.workers * largest + CONNECTION_MEMORY * connections) as u64
+    }
+
+    /// Prints it.
+    pub(crate) fn print(&self, kinds: &[Kind]) {
+        println!("{:.0} requests/s are served; the queue is worth {:.0} ms.", self.capacity, self.queue);
+        println!("One at a time, beside {} resident:\n", megabytes(self.memory));
+        println!("| request | asked | p50 | p99 | bytes |\n| --- | --- | --- | --- | --- |");
+        for (kind, tally) in kinds.iter().zip(&self.tallies) {
+            let (p50, p99) = (tally.percentile(50), tally.percentile(99));
+            println!("| {} | {} | {p50:.2} ms | {p99:.2} ms | {} |", kind.name, tally.served.len(), tally.largest);
+        }
+        let [p50, p99] = [50, 99].map(|percent| self.health.percentile(percent));
+        println!("| `/health/live` | every 2 ms | {p50:.2} ms | {p99:.2} ms | |\n");
+    }
+}
+
+/// A flood, and what was seen beside it.
+#[derive(Debug)]
+pub(crate) struct Row {
+    /// In capacities.
+    pub(crate) factor: f64,
+    pub(crate) flood: Flood,
+    pub(crate) health: Health,
+    pub(crate) recovery: Recovery,
+    /// The greatest resident, bytes.
+    pub(crate) memory: u64,
+    /// Resident after the recovery, bytes.
+    pub(crate) kept: u64,
+    /// The generator, % of a processor.
+    pub(crate) busy: f64,
+}
+
+impl Row {
+    /// The head of the table.
+    pub(crate) fn print_head(kinds: &[Kind]) {
+        let latencies = kinds.iter().map(|kind| format!("p99 {}", kind.name));
+        let first = ["load", "asked for", "sent", "not sent", "served", "refused", "wrong"].map(str::to_owned);
+        let last = ["`/health/live` p99", "longest", "memory", "kept", "recovery", "generator", "late p99"];
+        let columns: Vec<_> = first.into_iter().chain(latencies).chain(last.map(str::to_owned)).collect();
+        println!("| {} |\n|{}", columns.join(" | "), " --- |".repeat(columns.len()));
+    }
+
+    /// Its line of the table; where there is a bar, beside it.
+    pub(crate) fn print(&self, usual: &Usual, kinds: &[Kind]) {
+        let Flood { tallies, not_sent, rate, connections, .. } = &self.flood;
+        let of = |count: &dyn Fn(&Tally) -> usize| tallies.iter().map(count).sum::<usize>();
+        let served = of(&|tally| tally.served.len());
+        let refused = of(&|tally| tally.refused);
+        let latencies = kinds.iter().zip(tallies).enumerate().map(|(position, (kind, tally))| {
+            format!("{:.0} of {:.0} ms", tally.percentile(99), usual.latency_bar(position, kind))
+        });
+        let latencies = latencies.collect::<Vec<_>>().join(" | ");
+        let [p99, longest] = [99, 100].map(|percent| self.health.percentile(percent));
+        let memory = format!("{} of {}", megabytes(self.memory), megabytes(usual.memory_bar(*connections)));
+        println!(
+            "| {}× | {:.0}/s | {rate:.0}/s | {not_sent} | {served} | {refused} | {} | {latencies} | {p99:.1} ms | {longest:.1} ms | {memory} | \
+             {} | {:.2}, {:.2} s | {:.0} % | {:.1} ms |",
+            self.factor,
+            self.factor * usual.capacity,
+            self.wrong(),
+            megabytes(self.kept),
+            self.recovery.served,
+            self.recovery.calm,
+            self.busy,
+            percentile(&self.flood.late, 99),
+        );
+    }
+
+    /// Requests that had neither their answer nor a refusal.
+    fn wrong(&self) -> usize {
+        self.flood.tallies.iter().map(|tally| tally.wrong.len()).sum::<usize>() + self.flood.unanswered
+    }
+
+    /// The bars that are missed, in words; those of time where they are held.
+    pub(crate) fn missed(&self, usual: &Usual, kinds: &[Kind], timed: bool) -> Vec<String> {
+        let mut missed = self.errors();
+        let bar = usual.memory_bar(self.flood.connections);
+        if self.memory > bar {
+            missed.push(format!("{} were resident, above {}", megabytes(self.memory), megabytes(bar)));
+        }
+        if self.recovery.calm.is_infinite() {
+            missed.push("no recovery".to_owned());
+        }
+        if timed {
+            missed.extend(self.late(usual, kinds));
+        }
+        missed.iter().map(|miss| format!("at {}×: {miss}", self.factor)).collect()
+    }
+
+    /// The first of the wrong answers, and how many there were.
+    fn errors(&self) -> Vec<String> {
+        let wrong = self.flood.tallies.iter().flat_map(|tally| &tally.wrong);
+        let mut errors: Vec<_> = wrong.take(PRINTED).cloned().collect();
+        if self.wrong() > 0 {
+            errors.push(format!("{} wrong answers, {} requests without any", self.wrong(), self.flood.unanswered));
+        }
+        errors
+    }
+
+    /// The bars of time that are missed.
+    fn late(&self, usual: &Usual, kinds: &[Kind]) -> Vec<String> {
+        let mut held = Vec::new();
+        for (position, kind) in kinds.iter().enumerate() {
+            let p99 = self.flood.tallies[position].percentile(99);
+            held.push((format!("p99 of {}, ms", kind.name), p99, usual.latency_bar(position, kind)));
+        }
+        held.push(("p99 of /health/live, ms".to_owned(), self.health.percentile(99), GREATEST_HEALTH_P99));
+        held.push(("recovery, s".to_owned(), self.recovery.calm, LONGEST_RECOVERY));
+        // Also where nothing was served: then the figure is not a number.
+        held.retain(|(_, figure, bar)| figure.is_nan() || figure > bar);
+        held.iter().map(|(name, figure, bar)| format!("{name}: {figure:.1}, above {bar:.1}")).collect()
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "memory is far below 2^52 bytes")]
+fn megabytes(bytes: u64) -> String {
+    format!("{:.0} MB", bytes as f64 / 1e6)
+}
