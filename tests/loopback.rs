@@ -82,6 +82,18 @@ impl Program {
         number.map(|kilobytes| kilobytes * 1024).ok_or_else(|| Error::other(format!("the status has no {field}")))
     }
 
+    /// The processor time of all its threads.
+    ///
+    /// # Errors
+    /// When it has ended.
+    pub fn processor_time(&self) -> io::Result<Duration> {
+        let path = format!("/proc/{}/stat", self.process.id());
+        let fields = fs::read_to_string(&path)?;
+        // Its name, in parentheses, may have blanks; behind it, the twelfth and the thirteenth are those of itself and of the system.
+        let fields = fields.rsplit_once(") ").map_or("", |(_, fields)| fields);
+        ticks(fields.split(' ').skip(11).take(2)).ok_or_else(|| Error::other(format!("{path} has no times")))
+    }
+
     /// Has `VmHWM` of [`Program::memory`] be the greatest from now on.
     ///
     /// # Errors
@@ -259,4 +271,22 @@ pub fn processor_time() -> io::Result<Duration> {
     let statistics = fs::read_to_string("/proc/self/schedstat")?;
     let nanoseconds = statistics.split(' ').next().and_then(|first| first.parse().ok());
     nanoseconds.map(Duration::from_nanos).ok_or_else(|| Error::other("/proc/self/schedstat has no number"))
+}
+
+/// The processor time of all that runs on the machine, and of what runs beside it on the same processors.
+///
+/// # Errors
+/// When the system does not tell.
+pub fn machine_time() -> io::Result<Duration> {
+    let statistics = fs::read_to_string("/proc/stat")?;
+    let fields = statistics.lines().next().unwrap_or_default().split_whitespace();
+    // The name, then: user, nice, system, idle, iowait, irq, softirq, steal.
+    let busy = fields.skip(1).enumerate().filter(|(index, _)| [0, 1, 2, 7].contains(index)).map(|(_, field)| field);
+    ticks(busy).ok_or_else(|| Error::other("/proc/stat has no times"))
+}
+
+/// A sum of times that the system tells in hundredths of a second.
+fn ticks<'a>(fields: impl Iterator<Item = &'a str>) -> Option<Duration> {
+    let ticks = fields.map(|field| field.parse::<u64>().ok()).sum::<Option<u64>>()?;
+    Some(Duration::from_millis(10 * ticks))
 }

@@ -16,11 +16,11 @@ use std::time::Duration;
 
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
-use reentry_tests::loopback::{Connection, Program, processor_time};
+use reentry_tests::loopback::Program;
 use tokio::task::JoinSet;
 use tokio::time::Instant;
 
-use bars::{Row, Usual};
+use bars::{Row, Times, Usual};
 use flood::{Connections, flood};
 use health::{Health, recover};
 use mix::{Kind, SHORT, Tally, draw, kinds};
@@ -49,6 +49,8 @@ struct Plan {
     capacity: Duration,
     /// How long each kind is asked alone.
     unloaded: Duration,
+    /// What a connection may hold, bytes: the buffers of its two directions and what is known of its request.
+    connection: usize,
     /// Whether the bars of time are held.
     timed: bool,
 }
@@ -59,15 +61,17 @@ const FULL: Plan = Plan {
     flood: Duration::from_secs(5),
     capacity: Duration::from_secs(4),
     unloaded: Duration::from_secs(1),
+    connection: 64 << 10,
     timed: true,
 };
 
-/// Some ten seconds.
+/// Some ten seconds. On a busy machine connections are many, and a test is to know growth without bound alone.
 const BRIEF: Plan = Plan {
     factors: &[1.0, 5.0],
     flood: Duration::from_secs(1),
     capacity: Duration::from_secs(1),
     unloaded: Duration::from_millis(200),
+    connection: 1 << 20,
     timed: false,
 };
 
@@ -96,15 +100,15 @@ async fn run(plan: &Plan) -> io::Result<bool> {
     let mut chance = Xoshiro256PlusPlus::seed_from_u64(SEED);
     closed_loop(program.address, &kinds, plan.capacity / 2, &mut chance).await?;
     let capacity = closed_loop(program.address, &kinds, plan.capacity, &mut chance).await?;
-    let usual = Usual::measure(&program, &kinds, capacity, plan.unloaded).await?;
+    let usual = Usual::measure(&program, &kinds, capacity, plan.unloaded, &mut chance).await?;
     usual.print(&kinds);
     let connections = Arc::new(Connections::new(program.address));
     let mut missed = Vec::new();
     Row::print_head(&kinds);
     for factor in plan.factors {
         let row = overload(&program, &connections, &kinds, (*factor, plan.flood), &usual, &mut chance).await?;
-        row.print(&usual, &kinds);
-        missed.extend(row.missed(&usual, &kinds, plan.timed));
+        row.print(&usual, &kinds, plan);
+        missed.extend(row.missed(&usual, &kinds, plan));
     }
     for miss in &missed {
         eprintln!("missed: {miss}");
@@ -123,14 +127,14 @@ async fn overload(
 ) -> io::Result<Row> {
     program.forget_greatest_memory()?;
     let watch = Health::watch(program.address);
-    let (busy, start) = (processor_time()?, Instant::now());
+    let (clock, start) = (Times::now(program)?, Instant::now());
     let rest = flood(connections, kinds, factor * usual.capacity, time, chance).await;
-    let busy = 100.0 * processor_time()?.saturating_sub(busy).as_secs_f64() / start.elapsed().as_secs_f64();
+    let times = Times::now(program)?.since(&clock, start.elapsed());
     let health = watch.stop().await?;
     let recovery = recover(program.address, &kinds[SHORT], usual.calm(), rest.end()).await?;
     let flood = rest.collect().await;
     let (memory, kept) = (program.memory("VmHWM")?, program.memory("VmRSS")?);
-    Ok(Row { factor, flood, health, recovery, memory, kept, busy })
+    Ok(Row { factor, flood, health, recovery, memory, kept, times })
 }
 
 /// Asks all kinds in their shares on some connections, each again as soon as it is answered; how many are served a second.
@@ -142,22 +146,22 @@ async fn closed_loop(
     chance: &mut Xoshiro256PlusPlus,
 ) -> io::Result<f64> {
     let start = Instant::now();
+    let connections = Arc::new(Connections::new(address));
     let mut clients = JoinSet::new();
     for _ in 0..CLOSED_LOOP {
-        let (kinds, mut chance) = (Arc::clone(kinds), Xoshiro256PlusPlus::from_rng(chance));
+        let (kinds, connections) = (Arc::clone(kinds), Arc::clone(&connections));
+        let mut chance = Xoshiro256PlusPlus::from_rng(chance);
         clients.spawn(async move {
-            let mut connection = Connection::open(address).await?;
             let mut tallies: Vec<_> = kinds.iter().map(|_| Tally::default()).collect();
             while start.elapsed() < time {
                 let position = draw(&kinds, &mut chance);
-                let reply = connection.ask(&kinds[position].request).await;
+                let reply = connections.request(&kinds[position].request).await;
                 tallies[position].count(&kinds[position], &reply, start.elapsed());
             }
-            io::Result::Ok(tallies)
+            tallies
         });
     }
-    let tallies = clients.join_all().await.into_iter().collect::<io::Result<Vec<_>>>()?;
-    let tallies: Vec<_> = tallies.into_iter().flatten().collect();
+    let tallies: Vec<_> = clients.join_all().await.into_iter().flatten().collect();
     if let Some(wrong) = tallies.iter().flat_map(|tally| &tally.wrong).next() {
         return Err(Error::other(format!("without a flood, {wrong}")));
     }

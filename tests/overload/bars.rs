@@ -3,12 +3,14 @@
 use std::io::{self, Error};
 use std::time::Duration;
 
+use rand::rngs::Xoshiro256PlusPlus;
 use reentry_service::config::Config;
-use reentry_tests::loopback::{Connection, Program, percentile};
+use reentry_tests::loopback::{Program, machine_time, percentile, processor_time};
 
-use crate::flood::Flood;
+use crate::Plan;
+use crate::flood::{Connections, Flood};
 use crate::health::{Health, Recovery, ask_for};
-use crate::mix::{CASES, Kind, SHORT, Tally};
+use crate::mix::{CASES, Kind, SHORT, Tally, draw};
 
 /// How many times its unloaded value the p99 may be, beside what the queue is worth.
 const GREATEST_SLOWDOWN: f64 = 3.0;
@@ -20,8 +22,8 @@ const LONGEST_RECOVERY: f64 = 1.0;
 const CALM: f64 = 2.0;
 /// How often a worker may hold the largest answer: as rows, as a text that grows, and as one that is sent.
 const ANSWER_COPIES: usize = 4;
-/// What a connection may hold, bytes: the buffers of its two directions and what is known of its request.
-const CONNECTION_MEMORY: usize = 64 << 10;
+/// Queues that are drawn to see what the worst of a hundred is worth.
+const QUEUES: usize = 10_000;
 /// Wrong answers that are printed of a flood.
 const PRINTED: usize = 5;
 
@@ -36,19 +38,27 @@ pub(crate) struct Usual {
     /// Resident, bytes.
     memory: u64,
     workers: usize,
-    /// What the queue is worth, ms: the workers serve the mix at the capacity, and as many requests wait as may.
+    /// What the queue is worth on average, ms: as many requests wait as may, and the workers serve the mix at the capacity.
     queue: f64,
+    /// What the worst of a hundred queues is worth, ms.
+    worst_queue: f64,
 }
 
 impl Usual {
     /// Asks each kind for a time.
     #[expect(clippy::cast_precision_loss, reason = "a queue is far below 2^52")]
-    pub(crate) async fn measure(program: &Program, kinds: &[Kind], capacity: f64, time: Duration) -> io::Result<Self> {
+    pub(crate) async fn measure(
+        program: &Program,
+        kinds: &[Kind],
+        capacity: f64,
+        time: Duration,
+        chance: &mut Xoshiro256PlusPlus,
+    ) -> io::Result<Self> {
         let watch = Health::watch(program.address);
-        let mut connection = Connection::open(program.address).await?;
+        let connections = Connections::new(program.address);
         let mut tallies = Vec::new();
         for kind in kinds {
-            let tally = ask_for(&mut connection, kind, time).await;
+            let tally = ask_for(&connections, kind, time).await;
             if let Some(wrong) = tally.wrong.first() {
                 return Err(Error::other(format!("without a flood, {wrong}")));
             }
@@ -56,8 +66,10 @@ impl Usual {
         }
         let config = Config::default();
         let queue = 1e3 * config.queue as f64 / capacity;
+        let worst_queue = queue * spread(&tallies, kinds, config.queue, chance);
         let health = watch.stop().await?;
-        Ok(Self { capacity, tallies, health, memory: program.memory("VmRSS")?, workers: config.workers(), queue })
+        let (memory, workers) = (program.memory("VmRSS")?, config.workers());
+        Ok(Self { capacity, tallies, health, memory, workers, queue, worst_queue })
     }
 
     /// What the median of short requests may be when all is as before, ms.
@@ -65,22 +77,29 @@ impl Usual {
         CALM * self.tallies[SHORT].percentile(50)
     }
 
-    /// What the p99 of a kind may be, ms: who is accepted waits for those in the queue, and a batch does so with each of its cases.
+    /// What the p99 of a kind may be, ms.
+    ///
+    /// Who is accepted waits for those in the queue, and the worst of a hundred waits for the worst of a hundred queues. A batch waits
+    /// for an average queue with each of its cases, as a single request would; that others are under way is no reason to wait longer, as
+    /// the queue of singles is what they share the workers with.
     #[expect(clippy::cast_precision_loss, reason = "cases are far below 2^52")]
     fn latency_bar(&self, position: usize, kind: &Kind) -> f64 {
-        let turns = if kind.is_batch() { CASES as f64 } else { 1.0 };
-        GREATEST_SLOWDOWN * self.tallies[position].percentile(99) + turns * self.queue
+        let wait = if kind.is_batch() { CASES as f64 * self.queue } else { self.worst_queue };
+        GREATEST_SLOWDOWN * self.tallies[position].percentile(99) + wait
     }
 
     /// What may be resident, bytes.
-    fn memory_bar(&self, connections: usize) -> u64 {
+    fn memory_bar(&self, connections: usize, plan: &Plan) -> u64 {
         let largest = self.tallies.iter().map(|tally| tally.largest).max().unwrap_or(0);
-        self.memory + (ANSWER_COPIES * self.workers * largest + CONNECTION_MEMORY * connections) as u64
+        self.memory + (ANSWER_COPIES * self.workers * largest + plan.connection * connections) as u64
     }
 
     /// Prints it.
     pub(crate) fn print(&self, kinds: &[Kind]) {
-        println!("{:.0} requests/s are served; the queue is worth {:.0} ms.", self.capacity, self.queue);
+        let Self { capacity, queue, worst_queue, .. } = self;
+        println!(
+            "{capacity:.0} requests/s are served; the queue is worth {queue:.0} ms, the worst of a hundred {worst_queue:.0} ms."
+        );
         println!("One at a time, beside {} resident:\n", megabytes(self.memory));
         println!("| request | asked | p50 | p99 | bytes |\n| --- | --- | --- | --- | --- |");
         for (kind, tally) in kinds.iter().zip(&self.tallies) {
@@ -89,6 +108,49 @@ impl Usual {
         }
         let [p50, p99] = [50, 99].map(|percent| self.health.percentile(percent));
         println!("| `/health/live` | every 2 ms | {p50:.2} ms | {p99:.2} ms | |\n");
+    }
+}
+
+/// How much longer than the average the worst of a hundred queues takes, if each request takes what it takes alone.
+#[expect(clippy::cast_precision_loss, reason = "queues are far below 2^52")]
+fn spread(tallies: &[Tally], kinds: &[Kind], length: usize, chance: &mut Xoshiro256PlusPlus) -> f64 {
+    let mut queue = || -> f64 { (0..length).map(|_| tallies[draw(kinds, chance)].percentile(50)).sum() };
+    let mut queues: Vec<_> = (0..QUEUES).map(|_| queue()).collect();
+    queues.sort_by(f64::total_cmp);
+    percentile(&queues, 99) * QUEUES as f64 / queues.iter().sum::<f64>()
+}
+
+/// Processor times, s.
+#[derive(Debug)]
+pub(crate) struct Times {
+    /// Of the generator.
+    generator: f64,
+    /// Of the service.
+    program: f64,
+    /// Of all there is, these two included.
+    machine: f64,
+}
+
+impl Times {
+    /// Those until now.
+    pub(crate) fn now(program: &Program) -> io::Result<Self> {
+        let [generator, program, machine] = [processor_time()?, program.processor_time()?, machine_time()?];
+        Ok(Self { generator: generator.as_secs_f64(), program: program.as_secs_f64(), machine: machine.as_secs_f64() })
+    }
+
+    /// Those since then, of one processor.
+    pub(crate) fn since(&self, then: &Self, elapsed: Duration) -> Self {
+        let share = |now: f64, then: f64| (now - then) / elapsed.as_secs_f64();
+        Self {
+            generator: share(self.generator, then.generator),
+            program: share(self.program, then.program),
+            machine: share(self.machine, then.machine),
+        }
+    }
+
+    /// What neither the service nor the generator took.
+    fn others(&self) -> f64 {
+        (self.machine - self.program - self.generator).max(0.0)
     }
 }
 
@@ -104,8 +166,8 @@ pub(crate) struct Row {
     pub(crate) memory: u64,
     /// Resident after the recovery, bytes.
     pub(crate) kept: u64,
-    /// The generator, % of a processor.
-    pub(crate) busy: f64,
+    /// While it lasted.
+    pub(crate) times: Times,
 }
 
 impl Row {
@@ -113,13 +175,23 @@ impl Row {
     pub(crate) fn print_head(kinds: &[Kind]) {
         let latencies = kinds.iter().map(|kind| format!("p99 {}", kind.name));
         let first = ["load", "asked for", "sent", "not sent", "served", "refused", "wrong"].map(str::to_owned);
-        let last = ["`/health/live` p99", "longest", "memory", "kept", "recovery", "generator", "late p99"];
+        let last = [
+            "`/health/live` p99",
+            "longest",
+            "memory",
+            "kept",
+            "recovery",
+            "generator",
+            "late p99",
+            "service",
+            "others",
+        ];
         let columns: Vec<_> = first.into_iter().chain(latencies).chain(last.map(str::to_owned)).collect();
         println!("| {} |\n|{}", columns.join(" | "), " --- |".repeat(columns.len()));
     }
 
     /// Its line of the table; where there is a bar, beside it.
-    pub(crate) fn print(&self, usual: &Usual, kinds: &[Kind]) {
+    pub(crate) fn print(&self, usual: &Usual, kinds: &[Kind], plan: &Plan) {
         let Flood { tallies, not_sent, rate, connections, .. } = &self.flood;
         let of = |count: &dyn Fn(&Tally) -> usize| tallies.iter().map(count).sum::<usize>();
         let served = of(&|tally| tally.served.len());
@@ -129,18 +201,20 @@ impl Row {
         });
         let latencies = latencies.collect::<Vec<_>>().join(" | ");
         let [p99, longest] = [99, 100].map(|percent| self.health.percentile(percent));
-        let memory = format!("{} of {}", megabytes(self.memory), megabytes(usual.memory_bar(*connections)));
+        let memory = format!("{} of {}", megabytes(self.memory), megabytes(usual.memory_bar(*connections, plan)));
         println!(
             "| {}× | {:.0}/s | {rate:.0}/s | {not_sent} | {served} | {refused} | {} | {latencies} | {p99:.1} ms | {longest:.1} ms | {memory} | \
-             {} | {:.2}, {:.2} s | {:.0} % | {:.1} ms |",
+             {} | {:.2}, {:.2} s | {:.0} % | {:.1} ms | {:.0} % | {:.0} % |",
             self.factor,
             self.factor * usual.capacity,
             self.wrong(),
             megabytes(self.kept),
             self.recovery.served,
             self.recovery.calm,
-            self.busy,
+            100.0 * self.times.generator,
             percentile(&self.flood.late, 99),
+            100.0 * self.times.program,
+            100.0 * self.times.others(),
         );
     }
 
@@ -150,19 +224,21 @@ impl Row {
     }
 
     /// The bars that are missed, in words; those of time where they are held.
-    pub(crate) fn missed(&self, usual: &Usual, kinds: &[Kind], timed: bool) -> Vec<String> {
+    pub(crate) fn missed(&self, usual: &Usual, kinds: &[Kind], plan: &Plan) -> Vec<String> {
         let mut missed = self.errors();
-        let bar = usual.memory_bar(self.flood.connections);
+        let bar = usual.memory_bar(self.flood.connections, plan);
         if self.memory > bar {
             missed.push(format!("{} were resident, above {}", megabytes(self.memory), megabytes(bar)));
         }
         if self.recovery.calm.is_infinite() {
             missed.push("no recovery".to_owned());
         }
-        if timed {
+        if plan.timed {
             missed.extend(self.late(usual, kinds));
         }
-        missed.iter().map(|miss| format!("at {}×: {miss}", self.factor)).collect()
+        let at =
+            format!("at {}×, beside others that took {:.0} % of a processor", self.factor, 100.0 * self.times.others());
+        missed.iter().map(|miss| format!("{at}: {miss}")).collect()
     }
 
     /// The first of the wrong answers, and how many there were.

@@ -36,12 +36,13 @@ struct Held {
 struct Taken(Option<Connection>);
 
 impl Connections {
+    /// None yet.
     pub(crate) fn new(address: SocketAddr) -> Self {
         Self { address, state: Mutex::default() }
     }
 
     /// How many are open.
-    pub(crate) fn open(&self) -> usize {
+    fn open(&self) -> usize {
         self.held(|held| held.open)
     }
 
@@ -62,6 +63,12 @@ impl Connections {
             held.open += usize::from(room);
             room.then_some(Taken(None))
         })
+    }
+
+    /// Asks at once.
+    pub(crate) async fn request(&self, request: &[u8]) -> io::Result<Reply> {
+        let taken = self.take().ok_or_else(|| io::Error::other("too many connections"))?;
+        self.ask(taken, request).await
     }
 
     /// Asks on a connection that was taken, and gives it back.
@@ -132,7 +139,7 @@ pub(crate) async fn flood(
         if due > start + time {
             break;
         }
-        // Whatever is due goes at once, and whoever has an answer to read has a turn.
+        // What is due already goes at once; while nothing is, those have a turn who have an answer to read.
         if due > Instant::now() {
             sleep_until(due).await;
         }

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use reentry_tests::loopback::{Connection, get, percentile};
+use reentry_tests::loopback::{get, percentile};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep, sleep_until};
 
+use crate::flood::Connections;
 use crate::mix::{Kind, Tally};
 
 /// Between two questions to `/health/live`.
@@ -53,11 +54,11 @@ impl Watch {
 }
 
 async fn watch(address: SocketAddr, stop: Arc<AtomicBool>) -> io::Result<Vec<f64>> {
-    let mut connection = Connection::open(address).await?;
+    let connections = Connections::new(address);
     let mut latencies = Vec::new();
     while !stop.load(Ordering::Relaxed) {
         let start = Instant::now();
-        let reply = connection.ask(&get("/health/live")).await?;
+        let reply = connections.request(&get("/health/live")).await?;
         if reply.status != 200 {
             return Err(Error::other(format!("/health/live answers {}", reply.status)));
         }
@@ -88,11 +89,11 @@ pub(crate) struct Recovery {
 
 /// Waits after the end of a flood until all is as before: the median of short requests is no more than `calm` ms.
 pub(crate) async fn recover(address: SocketAddr, short: &Kind, calm: f64, end: Instant) -> io::Result<Recovery> {
-    let mut connection = Connection::open(address).await?;
+    let connections = Connections::new(address);
     let mut recovery = Recovery { served: f64::INFINITY, calm: f64::INFINITY };
     while recovery.served.is_infinite() && end.elapsed() < NO_RECOVERY {
-        let served = connection.ask(&short.request).await?.status == 200;
-        if served && connection.ask(&get("/health/ready")).await?.status == 200 {
+        let served = connections.request(&short.request).await?.status == 200;
+        if served && connections.request(&get("/health/ready")).await?.status == 200 {
             recovery.served = end.elapsed().as_secs_f64();
         } else {
             sleep(PERIOD).await;
@@ -100,7 +101,7 @@ pub(crate) async fn recover(address: SocketAddr, short: &Kind, calm: f64, end: I
     }
     while recovery.calm.is_infinite() && end.elapsed() < NO_RECOVERY {
         let start = end.elapsed().as_secs_f64();
-        if ask_for(&mut connection, short, CALM_WINDOW).await.percentile(50) <= calm {
+        if ask_for(&connections, short, CALM_WINDOW).await.percentile(50) <= calm {
             recovery.calm = start;
         }
     }
@@ -108,12 +109,12 @@ pub(crate) async fn recover(address: SocketAddr, short: &Kind, calm: f64, end: I
 }
 
 /// Asks a kind for a time, one request after another.
-pub(crate) async fn ask_for(connection: &mut Connection, kind: &Kind, time: Duration) -> Tally {
+pub(crate) async fn ask_for(connections: &Connections, kind: &Kind, time: Duration) -> Tally {
     let mut tally = Tally::default();
     let start = Instant::now();
     while start.elapsed() < time && tally.wrong.is_empty() {
         let sent = Instant::now();
-        let reply = connection.ask(&kind.request).await;
+        let reply = connections.request(&kind.request).await;
         tally.count(kind, &reply, sent.elapsed());
     }
     tally.served.sort_by(f64::total_cmp);
