@@ -1,5 +1,5 @@
-//! What the programs have in common that measure the service on loopback: they start it, ask it, and read what it says, with as
-//! little work as will do, since they share its processors.
+//! What the programs have in common that measure the service on loopback: they start it, ask it, and read what it says,
+//! with as little work as will do, since they share its processors.
 
 use std::fs;
 use std::io::{self, Error, ErrorKind};
@@ -89,7 +89,8 @@ impl Program {
     pub fn processor_time(&self) -> io::Result<Duration> {
         let path = format!("/proc/{}/stat", self.process.id());
         let fields = fs::read_to_string(&path)?;
-        // Its name, in parentheses, may have blanks; behind it, the twelfth and the thirteenth are those of itself and of the system.
+        // Its name, in parentheses, may have blanks; behind it, the twelfth and the thirteenth are those of itself and
+        // of the system.
         let fields = fields.rsplit_once(") ").map_or("", |(_, fields)| fields);
         ticks(fields.split(' ').skip(11).take(2)).ok_or_else(|| Error::other(format!("{path} has no times")))
     }

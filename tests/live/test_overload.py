@@ -1,4 +1,4 @@
-"""More than the service can serve, by the program of `make load`: what does not depend on how fast or how busy the machine is."""
+"""More than the service can serve, by the program of `make load`: what holds on a slow and busy machine, too."""
 
 import os
 import subprocess

@@ -38,7 +38,8 @@ pub(crate) struct Usual {
     /// Resident, bytes.
     memory: u64,
     workers: usize,
-    /// What the queue is worth on average, ms: as many requests wait as may, and the workers serve the mix at the capacity.
+    /// What the queue is worth on average, ms: as many requests wait as may, and the workers serve the mix at the
+    /// capacity.
     queue: f64,
     /// What the worst of a hundred queues is worth, ms.
     worst_queue: f64,
@@ -79,9 +80,9 @@ impl Usual {
 
     /// What the p99 of a kind may be, ms.
     ///
-    /// Who is accepted waits for those in the queue, and the worst of a hundred waits for the worst of a hundred queues. A batch waits
-    /// for an average queue with each of its cases, as a single request would; that others are under way is no reason to wait longer, as
-    /// the queue of singles is what they share the workers with.
+    /// Who is accepted waits for those in the queue, and the worst of a hundred waits for the worst of a hundred
+    /// queues. A batch may wait for an average queue with each of its cases, as singles would; for the other batches
+    /// under way it is given no more.
     #[expect(clippy::cast_precision_loss, reason = "cases are far below 2^52")]
     fn latency_bar(&self, position: usize, kind: &Kind) -> f64 {
         let wait = if kind.is_batch() { CASES as f64 * self.queue } else { self.worst_queue };
@@ -98,7 +99,7 @@ impl Usual {
     pub(crate) fn print(&self, kinds: &[Kind]) {
         let Self { capacity, queue, worst_queue, .. } = self;
         println!(
-            "{capacity:.0} requests/s are served; the queue is worth {queue:.0} ms, the worst of a hundred {worst_queue:.0} ms."
+            "{capacity:.0} requests/s are served; a queue is worth {queue:.0} ms, the worst of 100 {worst_queue:.0} ms."
         );
         println!("One at a time, beside {} resident:\n", megabytes(self.memory));
         println!("| request | asked | p50 | p99 | bytes |\n| --- | --- | --- | --- | --- |");
@@ -149,7 +150,7 @@ impl Times {
     }
 
     /// What neither the service nor the generator took.
-    fn others(&self) -> f64 {
+    pub(crate) fn others(&self) -> f64 {
         (self.machine - self.program - self.generator).max(0.0)
     }
 }
@@ -203,8 +204,8 @@ impl Row {
         let [p99, longest] = [99, 100].map(|percent| self.health.percentile(percent));
         let memory = format!("{} of {}", megabytes(self.memory), megabytes(usual.memory_bar(*connections, plan)));
         println!(
-            "| {}× | {:.0}/s | {rate:.0}/s | {not_sent} | {served} | {refused} | {} | {latencies} | {p99:.1} ms | {longest:.1} ms | {memory} | \
-             {} | {:.2}, {:.2} s | {:.0} % | {:.1} ms | {:.0} % | {:.0} % |",
+            "| {}× | {:.0}/s | {rate:.0}/s | {not_sent} | {served} | {refused} | {} | {latencies} | {p99:.1} ms | \
+             {longest:.1} ms | {memory} | {} | {:.2}, {:.2} s | {:.0} % | {:.1} ms | {:.0} % | {:.0} % |",
             self.factor,
             self.factor * usual.capacity,
             self.wrong(),
@@ -236,9 +237,7 @@ impl Row {
         if plan.timed {
             missed.extend(self.late(usual, kinds));
         }
-        let at =
-            format!("at {}×, beside others that took {:.0} % of a processor", self.factor, 100.0 * self.times.others());
-        missed.iter().map(|miss| format!("{at}: {miss}")).collect()
+        missed.iter().map(|miss| format!("at {}×: {miss}", self.factor)).collect()
     }
 
     /// The first of the wrong answers, and how many there were.

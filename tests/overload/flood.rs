@@ -1,9 +1,9 @@
 //! Requests that come by a clock of their own, whether or not those before them are answered.
 
-use std::io;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use std::{fs, io};
 
 use rand::RngExt;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -13,15 +13,16 @@ use tokio::time::{Instant, sleep_until, timeout, timeout_at};
 
 use crate::mix::{Kind, Tally, draw};
 
-/// Connections that are open at most, an eighth of what a system commonly lets a program have open.
-pub(crate) const MOST_CONNECTIONS: usize = 2000;
-/// How long an answer may take before it counts as none: longer than the service allows any.
-const PATIENCE: Duration = Duration::from_secs(90);
+/// Connections that are open at most, where the system allows twice as many.
+const MOST_CONNECTIONS: usize = 2000;
+/// How long an answer may take before it counts as none: twice what the service allows a job.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The connections to a program: those that wait for no answer are taken up again.
 #[derive(Debug)]
 pub(crate) struct Connections {
     address: SocketAddr,
+    most: usize,
     state: Mutex<Held>,
 }
 
@@ -38,7 +39,7 @@ struct Taken(Option<Connection>);
 impl Connections {
     /// None yet.
     pub(crate) fn new(address: SocketAddr) -> Self {
-        Self { address, state: Mutex::default() }
+        Self { address, most: MOST_CONNECTIONS.min(open_files() / 2), state: Mutex::default() }
     }
 
     /// How many are open.
@@ -59,7 +60,7 @@ impl Connections {
                 }
                 held.open -= 1;
             }
-            let room = held.open < MOST_CONNECTIONS;
+            let room = held.open < self.most;
             held.open += usize::from(room);
             room.then_some(Taken(None))
         })
@@ -93,6 +94,15 @@ impl Connections {
             }
         }
     }
+}
+
+/// How many files this program may have open; the service, which it starts, may have as many.
+fn open_files() -> usize {
+    let limits = fs::read_to_string("/proc/self/limits").unwrap_or_default();
+    let soft =
+        limits.lines().find_map(|line| line.strip_prefix("Max open files")?.split_whitespace().next()?.parse().ok());
+    // "unlimited", or not told.
+    soft.unwrap_or(2 * MOST_CONNECTIONS)
 }
 
 /// What became of a flood.

@@ -33,9 +33,9 @@ pub(crate) struct Kind {
 /// Where the short flight is among the kinds.
 pub(crate) const SHORT: usize = 0;
 
-/// All kinds. Most requests are short, as they are in use; the long ones and the rows together take nine tenths of the computing,
-/// so that what can be served is hundreds a second, not ten thousands, and twenty times of it can be sent from one thread. Of
-/// the rarest there are still a hundred in five seconds.
+/// All kinds. Most requests are short, as they are in use; the long ones and the rows together take nine tenths of the
+/// computing, so that what can be served is hundreds a second, not ten thousands, and twenty times of it can be sent
+/// from one thread. Of the rarest there are still a hundred in five seconds.
 pub(crate) fn kinds() -> Vec<Kind> {
     let flight = |output: Value| {
         let mut case = target_2();
