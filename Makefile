@@ -34,7 +34,7 @@ $(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
 test: build $(VENV)/ready ## Run all tests
 	cd $(UI) && npm test
 	cargo test --locked --workspace
-	REENTRY=$(TARGET)/release/reentry $(VENV)/bin/python -B -m pytest tests/live
+	REENTRY=$(TARGET)/release/reentry OVERLOAD=$(TARGET)/debug/examples/overload $(VENV)/bin/python -B -m pytest tests/live
 	cd $(UI) && REENTRY=$(abspath $(TARGET))/release/reentry npm run e2e
 
 check: ui $(VENV)/ready ## Check form, lints, types, documentation, licences of dependencies, and the Dockerfile
@@ -60,10 +60,11 @@ air: ## Print what standard air makes of the thesis's cases
 bench: ## Measure what flights and rows cost, beside another integrator
 	cargo bench --locked --package reentry-tests
 
-# About a minute; nothing else should run meanwhile.
-load: build ## Measure the service under load, beside one that computes without its pool of workers
-	cargo build --quiet --release --locked --package reentry-tests --example load
+# About two minutes; nothing else should run meanwhile.
+load: build ## Measure the service under load, beside one that computes without its pool of workers, and under overload
+	cargo build --quiet --release --locked --package reentry-tests --example load --example overload
 	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/load
+	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/overload
 
 theory: ## Print how near the analytic theories come to the simulation
 	cargo run --quiet --locked --package reentry-tests --example theory

@@ -6,11 +6,9 @@
 //!
 //! `load inline ADDRESS` is the program that computes inline.
 
-use std::fs;
-use std::io::{self, Error, ErrorKind};
-use std::net::{SocketAddr, TcpListener};
-use std::path::PathBuf;
-use std::process::{Child, Command, ExitCode, Stdio};
+use std::io::{self, Error};
+use std::net::SocketAddr;
+use std::process::{Command, ExitCode};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
@@ -19,7 +17,7 @@ use axum::extract::State;
 use axum::http::header;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
-use axum::routing::{get, post};
+use axum::routing;
 use reentry_service::answer;
 use reentry_service::config::Config;
 use reentry_service::endpoints::health;
@@ -30,9 +28,8 @@ use reentry_service::router::surrounded;
 use reentry_service::state::AppState;
 use reentry_service::telemetry::Log;
 use reentry_service::wire::json;
-use reentry_tests::cases::thesis_cases;
+use reentry_tests::loopback::{Connection, Program, get, percentile, post, processor_time, target_2};
 use serde_json::{Value, json};
-use tokio::net::TcpStream;
 use tokio::task::JoinSet;
 use tokio::time::{Instant, sleep};
 
@@ -46,8 +43,6 @@ const ROUNDS: usize = 7;
 const WARM_UP: Duration = Duration::from_millis(500);
 /// Between an answer of `/health/live` and the next question.
 const HEALTH_PAUSE: Duration = Duration::from_millis(2);
-/// How long a program may take to listen.
-const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What the pool keeps of the inline rate.
 const LEAST_RATIO: f64 = 0.75;
@@ -74,12 +69,7 @@ fn main() -> ExitCode {
 /// Prints the table; whether no bar is missed.
 #[tokio::main(flavor = "current_thread")]
 async fn compare() -> io::Result<bool> {
-    let program = std::env::var_os("REENTRY").map_or_else(|| PathBuf::from("target/release/reentry"), PathBuf::from);
-    let pool = Program::start(|address| {
-        let mut command = Command::new(program);
-        command.args(["serve", "--listen", &address.to_string()]);
-        command
-    });
+    let pool = Program::serve();
     let this = std::env::current_exe()?;
     let inline = Program::start(|address| {
         let mut command = Command::new(this);
@@ -167,20 +157,12 @@ async fn turn(address: SocketAddr, request: &[u8], duration: Duration) -> io::Re
     for _ in 0..CONNECTIONS {
         clients.spawn(client(address, request.to_vec(), Duration::ZERO, end));
     }
-    let health = b"GET /health/live HTTP/1.1\r\nhost: load\r\n\r\n".to_vec();
-    let health = tokio::spawn(client(address, health, HEALTH_PAUSE, end));
+    let health = tokio::spawn(client(address, get("/health/live"), HEALTH_PAUSE, end));
     let answers =
         clients.join_all().await.into_iter().try_fold(Answers::default(), |all, one| one.map(|one| all.and(one)));
     let seconds = start.elapsed().as_secs_f64();
     let health = health.await??.sorted();
     Ok(Turn { seconds, answers: answers?.sorted(), health, busy: processor_time()?.saturating_sub(busy) })
-}
-
-/// The processor time of this program, which has one thread.
-fn processor_time() -> io::Result<Duration> {
-    let statistics = fs::read_to_string("/proc/self/schedstat")?;
-    let nanoseconds = statistics.split(' ').next().and_then(|first| first.parse().ok());
-    nanoseconds.map(Duration::from_nanos).ok_or_else(|| Error::other("/proc/self/schedstat has no number"))
 }
 
 /// Answers to one kind of request.
@@ -207,24 +189,20 @@ impl Answers {
 
     /// The latency, ms, that so many of a hundred answers do not exceed.
     fn percentile(&self, percent: usize) -> f64 {
-        let rank = (self.latencies.len() * percent).div_ceil(100).max(1);
-        self.latencies.get(rank - 1).copied().unwrap_or(f64::NAN)
+        percentile(&self.latencies, percent)
     }
 }
 
 /// Sends a request again and again on one connection.
 async fn client(address: SocketAddr, request: Vec<u8>, pause: Duration, end: Instant) -> io::Result<Answers> {
-    let stream = TcpStream::connect(address).await?;
-    stream.set_nodelay(true)?;
-    let mut buffer = vec![0; 1 << 16];
+    let mut connection = Connection::open(address).await?;
     let mut answers = Answers::default();
     while Instant::now() < end {
         let start = Instant::now();
-        write(&stream, &request).await?;
-        let (ok, bytes) = read_answer(&stream, &mut buffer).await?;
+        let reply = connection.ask(&request).await?;
         answers.latencies.push(start.elapsed().as_secs_f64() * 1e3);
-        answers.not_ok += usize::from(!ok);
-        answers.bytes = bytes;
+        answers.not_ok += usize::from(reply.status != 200);
+        answers.bytes = reply.bytes;
         if !pause.is_zero() {
             sleep(pause).await;
         }
@@ -232,98 +210,11 @@ async fn client(address: SocketAddr, request: Vec<u8>, pause: Duration, end: Ins
     Ok(answers)
 }
 
-/// Whether the answer is 200, and the length of its body, which is thrown away.
-async fn read_answer(stream: &TcpStream, buffer: &mut [u8]) -> io::Result<(bool, usize)> {
-    let mut filled = 0;
-    let body = loop {
-        filled += read(stream, &mut buffer[filled..]).await?;
-        if let Some(end) = buffer[..filled].windows(4).position(|bytes| bytes == b"\r\n\r\n") {
-            break end + 4;
-        }
-    };
-    let head = String::from_utf8_lossy(&buffer[..body]);
-    let length = head.lines().find_map(|line| line.strip_prefix("content-length: ")?.parse().ok());
-    let length = length.ok_or_else(|| Error::other("an answer without a length"))?;
-    let ok = head.starts_with("HTTP/1.1 200 ");
-    let mut taken = filled - body;
-    while taken < length {
-        taken += read(stream, buffer).await?;
-    }
-    Ok((ok, length))
-}
-
-/// Writes all of it.
-async fn write(stream: &TcpStream, mut bytes: &[u8]) -> io::Result<()> {
-    while !bytes.is_empty() {
-        stream.writable().await?;
-        match stream.try_write(bytes) {
-            Ok(written) => bytes = &bytes[written..],
-            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(())
-}
-
-/// Reads what there is, at least a byte.
-async fn read(stream: &TcpStream, buffer: &mut [u8]) -> io::Result<usize> {
-    loop {
-        stream.readable().await?;
-        match stream.try_read(buffer) {
-            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-            result => return result,
-        }
-    }
-}
-
 /// `POST /simulate` of TARGET case 2.
 fn simulate_request(output: &Value) -> Vec<u8> {
-    let case = thesis_cases().into_iter().find(|case| case.name == "target_2" && case.model == "earth_wgs84");
-    let mut request = case.map(|case| case.request).unwrap_or_default();
-    request["output"] = output.clone();
-    let body = request.to_string();
-    let length = body.len();
-    format!("POST /simulate HTTP/1.1\r\nhost: load\r\ncontent-type: application/json\r\ncontent-length: {length}\r\n\r\n{body}")
-        .into_bytes()
-}
-
-/// A program that listens until dropped.
-struct Program {
-    process: Child,
-    address: SocketAddr,
-}
-
-impl Program {
-    /// Starts a program on a free port, with the settings that it has by itself; its log is thrown away.
-    async fn start(command: impl FnOnce(SocketAddr) -> Command) -> io::Result<Self> {
-        let address = TcpListener::bind("127.0.0.1:0")?.local_addr()?;
-        let mut command = command(address);
-        for (name, _) in std::env::vars_os() {
-            if name == "RUST_LOG" || name.as_encoded_bytes().starts_with(b"REENTRY") {
-                command.env_remove(name);
-            }
-        }
-        let process = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
-        let name = command.get_program().display();
-        let program = Self { process: process.map_err(|error| Error::other(format!("{name}: {error}")))?, address };
-        let end = Instant::now() + PATIENCE;
-        while let Err(error) = TcpStream::connect(address).await {
-            if Instant::now() > end {
-                return Err(Error::other(format!("{name} does not listen: {error}")));
-            }
-            sleep(Duration::from_millis(10)).await;
-        }
-        Ok(program)
-    }
-}
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        // An error: it has ended already.
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
+    let mut case = target_2();
+    case["output"] = output.clone();
+    post("/simulate", &case)
 }
 
 /// `/simulate` and `/health/live` of the service, with all that surrounds them, but for the pool.
@@ -331,7 +222,9 @@ impl Drop for Program {
 async fn serve_inline(address: &str) -> io::Result<()> {
     let config = Config::default();
     let log = Log::start(&config);
-    let routes = Router::new().route("/simulate", post(simulate_inline)).route("/health/live", get(health::live));
+    let routes = Router::new()
+        .route("/simulate", routing::post(simulate_inline))
+        .route("/health/live", routing::get(health::live));
     let listener = tokio::net::TcpListener::bind(address).await?;
     axum::serve(listener, surrounded(routes, AppState::new(config, log.lost_lines())?)).await
 }
