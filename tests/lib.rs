@@ -1,6 +1,8 @@
-//! What the tests share: the reference cases, and a service to call without a socket.
+//! What the tests share: the reference cases, a service to call without a socket, and what must hold of any request.
 
 pub mod cases;
+pub mod fuzzed;
+pub mod mutation;
 pub mod nesc;
 pub mod service;
 pub mod standard_air;

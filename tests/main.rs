@@ -8,6 +8,7 @@ mod check;
 mod conversions;
 mod events;
 mod flights;
+mod fuzzing;
 mod gravity;
 mod heating;
 mod http;
