@@ -130,7 +130,7 @@ pub fn convert(text: &[u8]) {
         for vector in ["position", "velocity"] {
             let [before, after] = [&answer, &back].map(|answer| numbers(&answer["ecef"][vector]));
             let off = before.iter().zip(&after).map(|(before, after)| (before - after).powi(2)).sum::<f64>().sqrt();
-            let size = scale(vector, &answer);
+            let size = scale(kind, vector, &answer, &tree);
             assert!(
                 off <= tolerance * size,
                 "{kind}: {vector} is off by {off} of {size}: {before:?}, {after:?} in {tree}"
@@ -149,10 +149,15 @@ const KINDS: [(&str, f64); 6] = [
     ("orbital_elements", 1e-4),
 ];
 
-/// The size of a vector, with which its rounding grows: of the velocity, the rotation of the frame included.
-fn scale(vector: &str, answer: &Value) -> f64 {
-    let size = |frame: &str| numbers(&answer[frame][vector]).iter().map(|x| x * x).sum::<f64>().sqrt();
-    size("ecef").max(size("eci"))
+/// The size of a vector, with which its rounding grows: of a place that of its altitude too, which is great at the planet's centre, and of
+/// the velocity that of the rotating frame, there or where rounding may bring the place.
+fn scale(kind: &str, vector: &str, answer: &Value, request: &Value) -> f64 {
+    let length = |vector: &str| numbers(&answer["ecef"][vector]).iter().map(|x| x * x).sum::<f64>().sqrt();
+    let rotation_rate = request["planet"]["rotation_rate"].as_f64().unwrap_or(7.3e-5);
+    match vector {
+        "position" => length(vector).max(answer[kind]["geodetic_altitude"].as_f64().unwrap_or_default().abs()),
+        _ => length(vector) + (rotation_rate * length("position")).abs(),
+    }
 }
 
 fn numbers(list: &Value) -> Vec<f64> {

@@ -7,6 +7,7 @@ mod atmosphere;
 mod check;
 mod conversions;
 mod events;
+mod expensive;
 mod flights;
 mod fuzzing;
 mod gravity;
