@@ -4,13 +4,17 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 UI := crates/service/ui
+FUZZ := $(TARGET)/tools/bin/cargo-fuzz
+# How long `make fuzz` runs each target, and on which sanitizer; those beside `none` need a nightly Rust.
+SECONDS := 60
+SANITIZER := none
 PAGE := $(UI)/dist/index.html
 # What the page is made of; folders too, whose times tell of files that were taken away.
 PAGE_SOURCES := $(shell find $(UI)/src $(UI)/build openapi/openapi.json openapi/examples tests/cases -not -path '*/generated*') \
 	$(addprefix $(UI)/,index.html package.json tsconfig.json vite.config.ts)
 
 .DELETE_ON_ERROR:
-.PHONY: help run build ui test check openapi validation air theory bench load
+.PHONY: help run build ui test check openapi validation air theory bench load fuzz
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -65,6 +69,18 @@ load: build ## Measure the service under load, beside one that computes without 
 	cargo build --quiet --release --locked --package reentry-tests --example load --example overload
 	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/load
 	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/overload
+
+# What it finds interesting stays in $(TARGET); `tests/fuzz/corpus` is what it begins with.
+fuzz: $(FUZZ) ## Try inputs that a fuzzer makes up, for SECONDS=60 a target
+	for target in parser simulate convert; do \
+		mkdir -p $(TARGET)/fuzz/corpus/$$target && \
+		$(FUZZ) run --fuzz-dir tests/fuzz --target-dir $(TARGET)/fuzz --sanitizer $(SANITIZER) $$target \
+			$(TARGET)/fuzz/corpus/$$target tests/fuzz/corpus/$$target -- \
+			-max_total_time=$(SECONDS) -max_len=8192 -timeout=20 -print_final_stats=1 || exit 1; \
+	done
+
+$(FUZZ):
+	cargo install --quiet --locked --root $(TARGET)/tools cargo-fuzz@0.13.2
 
 theory: ## Print how near the analytic theories come to the simulation
 	cargo run --quiet --locked --package reentry-tests --example theory

@@ -1,7 +1,10 @@
-//! What the tests share: the reference cases, a service to call without a socket, and programs to ask on loopback.
+//! What the tests share: the reference cases, a service to call without a socket, programs to ask on loopback, and what must hold of
+//! any request.
 
 pub mod cases;
+pub mod fuzzed;
 pub mod loopback;
+pub mod mutation;
 pub mod nesc;
 pub mod service;
 pub mod standard_air;

@@ -1,8 +1,7 @@
 //! The pool of blocking threads on which every job runs: bounded, with a deadline, and cancelled when nobody waits any more.
 //!
-//! Single jobs and batches share the workers but not the places. A batch has one job with the workers at a time, which waits its
-//! turn like any other, and all batches together leave one worker free, where there are two: a single job waits for the singles
-//! before it and, on a machine with one worker, for one case of a batch.
+//! Single jobs and batches have workers of their own, so that neither waits for the other: what both compute at once, the system divides
+//! between them. The jobs of all batches take turns.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,14 +22,16 @@ use crate::metrics::Metrics;
 /// A runtime of its own whose blocking threads compute; the threads that talk to clients never do.
 #[derive(Debug)]
 pub struct Compute {
-    /// Some until dropped.
-    pool: Option<Runtime>,
+    /// Of single jobs.
+    singles: Pool,
+    /// Of batches.
+    shared: Pool,
     /// For single jobs, waiting or running.
     places: Arc<Semaphore>,
     /// For batches under way.
     batches: Arc<Semaphore>,
-    /// The workers that all batches together may have.
-    shared: Arc<Semaphore>,
+    /// The workers that a batch waits for.
+    turns: Arc<Semaphore>,
     /// What a job may take, its waiting included.
     deadline: Duration,
     /// Where the answers count that have not been sent.
@@ -45,16 +46,13 @@ impl Compute {
     /// When the system gives no thread.
     pub fn new(config: &Config, memory: Arc<Memory>, metrics: Arc<Metrics>) -> std::io::Result<Self> {
         let workers = config.workers();
-        let pool = Builder::new_multi_thread()
-            .worker_threads(1)
-            .max_blocking_threads(workers)
-            .thread_name("reentry-compute")
-            .build()?;
+        let shared = workers.saturating_sub(1).max(1);
         Ok(Self {
-            pool: Some(pool),
+            singles: Pool::new("reentry-single", workers)?,
+            shared: Pool::new("reentry-batch", shared)?,
             places: Arc::new(Semaphore::new(workers + config.queue)),
             batches: Arc::new(Semaphore::new(config.batches)),
-            shared: Arc::new(Semaphore::new(workers.saturating_sub(1).max(1))),
+            turns: Arc::new(Semaphore::new(shared)),
             deadline: config.deadline,
             memory,
             metrics,
@@ -72,7 +70,7 @@ impl Compute {
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
         let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| ApiError::Busy)?;
-        self.work(route, place, job, self.deadline).await
+        self.work(&self.singles, route, place, job, self.deadline).await
     }
 
     /// Runs the jobs of a batch one after another and gives their results in order, those that the time does not suffice for
@@ -122,7 +120,7 @@ impl Compute {
         Ok(receiver)
     }
 
-    /// Runs a job of a batch that has so much time left, when the other batches leave it a worker.
+    /// Runs a job of a batch that has so much time left, when its turn comes.
     ///
     /// # Errors
     /// As [`Compute::run`], but that it waits for a place.
@@ -136,13 +134,14 @@ impl Compute {
         if left.is_zero() {
             return Err(out_of_time());
         }
-        let worker = timeout(left, Arc::clone(&self.shared).acquire_owned()).await.map_err(|_| out_of_time())?;
+        let worker = timeout(left, Arc::clone(&self.turns).acquire_owned()).await.map_err(|_| out_of_time())?;
         let left = left.saturating_sub(start.elapsed());
-        self.work(route, worker.map_err(|_| ApiError::Internal)?, job, left.min(self.deadline)).await
+        self.work(&self.shared, route, worker.map_err(|_| ApiError::Internal)?, job, left.min(self.deadline)).await
     }
 
     async fn work<T, F>(
         &self,
+        pool: &Pool,
         route: &'static str,
         place: OwnedSemaphorePermit,
         job: F,
@@ -152,13 +151,12 @@ impl Compute {
         T: Send + 'static,
         F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
     {
-        let pool = self.pool.as_ref().ok_or(ApiError::Internal)?;
         let caller = Caller(Arc::default());
         let call = Arc::clone(&caller.0);
         let (memory, metrics) = (Arc::clone(&self.memory), Arc::clone(&self.metrics));
         metrics.job_queued();
         let asked = Instant::now();
-        let handle = pool.spawn_blocking(move || {
+        let handle = pool.threads()?.spawn_blocking(move || {
             // The place is free again when the job has ended, not when its caller has gone.
             let _place = place;
             metrics.job_begun(route, asked.elapsed());
@@ -189,10 +187,28 @@ impl Compute {
     }
 }
 
-impl Drop for Compute {
+/// Threads that compute, in the order in which they are asked.
+#[derive(Debug)]
+struct Pool {
+    /// Some until dropped.
+    threads: Option<Runtime>,
+}
+
+impl Pool {
+    fn new(name: &str, threads: usize) -> std::io::Result<Self> {
+        let threads = Builder::new_current_thread().max_blocking_threads(threads).thread_name(name).build()?;
+        Ok(Self { threads: Some(threads) })
+    }
+
+    fn threads(&self) -> Result<&Runtime, ApiError> {
+        self.threads.as_ref().ok_or(ApiError::Internal)
+    }
+}
+
+impl Drop for Pool {
     fn drop(&mut self) {
-        if let Some(pool) = self.pool.take() {
-            pool.shutdown_background();
+        if let Some(threads) = self.threads.take() {
+            threads.shutdown_background();
         }
     }
 }

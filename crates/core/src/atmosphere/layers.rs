@@ -26,6 +26,8 @@ pub struct Layers {
     layers: Vec<Layer>,
     /// Where one layer ends and the next begins, m.
     boundaries: Vec<f64>,
+    sensible_altitude: f64,
+    scale_height: f64,
 }
 
 impl Layers {
@@ -42,8 +44,16 @@ impl Layers {
         };
         match layers.iter().position(|layer| !sound(layer)) {
             Some(index) => Err(TableError::OutOfBounds { index }),
-            None => Ok(Self { boundaries: bases[1..].to_vec(), layers }),
+            None => Ok(Self::of(layers)),
         }
+    }
+
+    /// Sound layers. What every step of a flight asks for is found here once: there may be thousands of them.
+    fn of(layers: Vec<Layer>) -> Self {
+        let boundaries: Vec<f64> = layers.iter().skip(1).map(|layer| layer.base_altitude).collect();
+        let sensible_altitude = sensible_altitude(&layers, &boundaries);
+        let scale_height = layers.iter().map(|layer| layer.scale_height).fold(f64::MAX, f64::min);
+        Self { layers, boundaries, sensible_altitude, scale_height }
     }
 
     /// Seven layers near the U.S. Standard Atmosphere, 1976: at the bases, 0, 10, 43, 68, 82, 112 and 120 km, and at 130 km, their density
@@ -59,7 +69,7 @@ impl Layers {
             let scale_height = (top - base_altitude) / (density / us76::density(top)).ln();
             Layer { base_altitude, density, scale_height }
         });
-        Self { layers: layers.collect(), boundaries: EARTH_BASES[1..EARTH_BASES.len() - 1].to_vec() }
+        Self::of(layers.collect())
     }
 
     /// The layers, from the lowest to the highest.
@@ -75,26 +85,37 @@ impl Layers {
     /// Density, kg/m³, at an altitude, m, by the formula of a layer, as if it had no end.
     #[inline(always)]
     pub fn density<S: Scalar>(&self, layer: usize, altitude: S) -> S {
-        let Layer { base_altitude, density, scale_height } = self.layers[layer];
-        falling(density, altitude - base_altitude, scale_height)
+        self.layers[layer].density_at(altitude)
     }
 
     /// The altitude, m, above which the density is less than e⁻³⁷ ≈ 10⁻¹⁶ of the greatest from altitude 0 on; 0 where there is no air.
     pub fn sensible_altitude(&self) -> f64 {
-        let at_0 = self.density(self.boundaries.iter().filter(|boundary| **boundary <= 0.0).count(), 0.0);
-        let above_0 = self.layers.iter().filter(|layer| layer.base_altitude > 0.0);
-        let greatest = above_0.fold(at_0, |greatest: f64, layer| greatest.max(layer.density));
-        // The highest layer that begins with sensible air, and where in it this ends.
-        let sensible = self.layers.iter().enumerate().rev().find_map(|(number, layer)| {
-            let reach = layer.scale_height * ((layer.density / greatest).ln() + SENSIBLE_SCALE_HEIGHTS);
-            let top = self.boundaries.get(number).copied().unwrap_or(f64::MAX);
-            (reach > 0.0).then(|| (layer.base_altitude + reach).min(top))
-        });
-        sensible.unwrap_or(0.0)
+        self.sensible_altitude
     }
 
     /// The least scale height, m.
     pub fn scale_height(&self) -> f64 {
-        self.layers.iter().map(|layer| layer.scale_height).fold(f64::MAX, f64::min)
+        self.scale_height
     }
+}
+
+impl Layer {
+    /// Density, kg/m³, at an altitude, m.
+    #[inline(always)]
+    fn density_at<S: Scalar>(&self, altitude: S) -> S {
+        falling(self.density, altitude - self.base_altitude, self.scale_height)
+    }
+}
+
+fn sensible_altitude(layers: &[Layer], boundaries: &[f64]) -> f64 {
+    let at_0 = layers[boundaries.iter().filter(|boundary| **boundary <= 0.0).count()].density_at(0.0);
+    let above_0 = layers.iter().filter(|layer| layer.base_altitude > 0.0);
+    let greatest = above_0.fold(at_0, |greatest: f64, layer| greatest.max(layer.density));
+    // The highest layer that begins with sensible air, and where in it this ends.
+    let sensible = layers.iter().enumerate().rev().find_map(|(number, layer)| {
+        let reach = layer.scale_height * ((layer.density / greatest).ln() + SENSIBLE_SCALE_HEIGHTS);
+        let top = boundaries.get(number).copied().unwrap_or(f64::MAX);
+        (reach > 0.0).then(|| (layer.base_altitude + reach).min(top))
+    });
+    sensible.unwrap_or(0.0)
 }

@@ -80,13 +80,19 @@ impl Alarms {
     pub(super) fn first<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         let length = passage.step.length();
+        let nearest = self.nearest();
         for (index, Alarm { condition, .. }) in self.armed() {
             let quantity = condition.quantity;
             if quantity == Quantity::Time {
                 continue;
             }
-            let ends = [self.last[quantity as usize], passage.quantity_at_end(quantity)];
-            let [start, end] = ends.map(|quantity| condition.before(quantity));
+            let [start, end] = [self.last[quantity as usize], passage.quantity_at_end(quantity)]
+                .map(|quantity| condition.before(quantity));
+            // A quantity comes to the nearest value before it comes to those beyond.
+            let is_behind = nearest[quantity as usize][condition.direction as usize] != index;
+            if start.re > 0.0 && is_behind {
+                continue;
+            }
             let inside = |part| before(condition, passage.motion.forces(), &passage.inside(part));
             if let Some(part) = event::first_crossing(start, end, length, inside)
                 && first.is_none_or(|(least, _)| part < least)
@@ -95,6 +101,20 @@ impl Alarms {
             }
         }
         first
+    }
+
+    /// Of every quantity and direction, the condition to which it has the shortest way; the first of several.
+    fn nearest(&self) -> [[usize; 2]; Quantity::ALL.len()] {
+        let mut nearest = [[(f64::INFINITY, usize::MAX); 2]; Quantity::ALL.len()];
+        for (index, Alarm { condition, .. }) in self.armed() {
+            let quantity = condition.quantity as usize;
+            let way = condition.before(self.last[quantity]).re;
+            let least = &mut nearest[quantity][condition.direction as usize];
+            if way > 0.0 && way < least.0 {
+                *least = (way, index);
+            }
+        }
+        nearest.map(|ways| ways.map(|(_, index)| index))
     }
 
     /// How far a quantity is before the value of a condition.

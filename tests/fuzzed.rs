@@ -1,0 +1,297 @@
+//! What must hold of any input: asked by the fuzz targets, of their corpus, and of random requests.
+
+use std::fmt::Debug;
+use std::sync::LazyLock;
+use std::sync::atomic::AtomicBool;
+
+use jsonschema::Validator;
+use reentry::scenario::{Case, Scenario, Solver};
+use reentry::simulate::{SimulationError, arrival};
+use reentry_service::error::ApiError;
+use reentry_service::format::Format;
+use reentry_service::wire::analytic::AnalyticJob;
+use reentry_service::wire::json::{elements, parse};
+use reentry_service::wire::scenario::{Job, Wanted};
+use reentry_service::{answer, document};
+use serde_json::{Value, json};
+
+/// Rows that an answer may have here: few, since every one is looked at.
+const ROW_LIMIT: usize = 64;
+/// Steps of the flights that are looked at here; the long ones are left to the tests of the deadline.
+const STEP_LIMIT: usize = 300;
+
+/// Nobody raises it.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+/// Any text: the parser of requests gives the tree that `serde_json` gives, and refuses more only where a key is there twice.
+///
+/// # Panics
+/// When that does not hold.
+pub fn parser(text: &[u8]) {
+    let shown = String::from_utf8_lossy(text);
+    let theirs = serde_json::from_slice::<Value>(text);
+    match (parse(text), &theirs) {
+        // As text, which keeps the order, and the sign of a zero.
+        (Ok(ours), Ok(theirs)) => assert_eq!(ours.to_string(), theirs.to_string(), "{shown:?}"),
+        (Err(error), Ok(_)) => assert!(error.to_string().starts_with("duplicate key"), "{error} in {shown:?}"),
+        (Ok(_), Err(error)) => panic!("serde_json has {error} in {shown:?}"),
+        (Err(_), Err(_)) => {}
+    }
+    if let Ok(tree) = &theirs {
+        // Written anew, no key is there twice any more.
+        assert_eq!(good(parse(tree.to_string().as_bytes()), &shown), *tree, "{shown:?}");
+    }
+    match (elements(text), theirs) {
+        (Ok(Some(texts)), Ok(Value::Array(trees))) => {
+            let read: Vec<Value> = texts.iter().map(|text| good(serde_json::from_str(text.get()), &shown)).collect();
+            assert_eq!(read, trees, "{shown:?}");
+        }
+        // Texts of elements are not looked into; an array around them is one more level of nesting.
+        (Ok(Some(texts)), Err(error)) => assert!(
+            error.to_string().starts_with("recursion limit")
+                || texts.iter().any(|text| parse(text.get().as_bytes()).is_err()),
+            "{error} in {shown:?}"
+        ),
+        (Ok(Some(_)), Ok(_)) | (Ok(None), Ok(Value::Array(_))) => panic!("{shown:?} is an array, or is it not?"),
+        (Err(error), Ok(_)) => panic!("{error} in {shown:?}"),
+        (Ok(None) | Err(_), _) => {}
+    }
+}
+
+/// A request for a flight: the answer is good, or names what is wrong with the request.
+///
+/// A letter before it asks for another format: `c`, `g`, `k` and `z` for CSV, `GeoJSON`, KML and CZML; `a` asks `/analytic`, and `b` for CSV
+/// there.
+///
+/// # Panics
+/// When the answer is neither.
+pub fn simulate(input: &[u8]) {
+    let (endpoint, format, text) = match input {
+        [b'c', text @ ..] => (Endpoint::Simulate, Format::Csv, text),
+        [b'g', text @ ..] => (Endpoint::Simulate, Format::Geojson, text),
+        [b'k', text @ ..] => (Endpoint::Simulate, Format::Kml, text),
+        [b'z', text @ ..] => (Endpoint::Simulate, Format::Czml, text),
+        [b'a', text @ ..] => (Endpoint::Analytic, Format::Json, text),
+        [b'b', text @ ..] => (Endpoint::Analytic, Format::Csv, text),
+        text => (Endpoint::Simulate, Format::Json, text),
+    };
+    let Ok(tree) = parse(text) else { return };
+    if endpoint.is_long(&tree) {
+        return;
+    }
+    let bytes = match endpoint.answer(tree.clone(), format) {
+        Ok(bytes) => bytes,
+        Err(error) => return refused(&error, &tree),
+    };
+    match format {
+        Format::Json => {
+            let answer = strict(&bytes, &tree);
+            valid(endpoint.schema(), &answer, &tree);
+            for rows in
+                ["trajectory", "simulated", "predicted", "difference"].iter().filter_map(|rows| answer.get(rows))
+            {
+                equally_long(rows, &tree);
+            }
+            if let Some(case) = answer.get("case") {
+                let again = strict(&good(endpoint.answer(case.clone(), format), &tree), &tree);
+                assert_eq!(without_computing_time(again), without_computing_time(answer), "{tree}");
+            }
+        }
+        Format::Csv => is_table(&bytes, &tree),
+        Format::Geojson | Format::Czml => drop(strict(&bytes, &tree)),
+        Format::Kml | Format::Ndjson => drop(good(String::from_utf8(bytes), &tree)),
+    }
+}
+
+/// A request for a conversion: what it answers can be sent back, whichever of its states, and is then the same state.
+///
+/// # Panics
+/// When that does not hold, or nothing of the request is named by a refusal.
+pub fn convert(text: &[u8]) {
+    let Ok(tree) = parse(text) else { return };
+    let bytes = match converted(tree.clone()) {
+        Ok(bytes) => bytes,
+        Err(error) => return refused(&error, &tree),
+    };
+    let answer = strict(&bytes, &tree);
+    valid(&CONVERT, &answer, &tree);
+    if let Some(case) = answer.get("case") {
+        assert_eq!(strict(&good(converted(case.clone()), &tree), &tree), answer, "{tree}");
+    }
+    for (kind, tolerance) in KINDS {
+        let mut request = json!({"angle_unit": answer["angle_unit"], "state": answer[kind]});
+        if let Some(planet) = tree.get("planet") {
+            request["planet"] = planet.clone();
+        }
+        if answer[kind].is_null() {
+            continue;
+        }
+        let back = strict(&good(converted(request.clone()), &request), &tree);
+        for vector in ["position", "velocity"] {
+            let [before, after] = [&answer, &back].map(|answer| numbers(&answer["ecef"][vector]));
+            let off = before.iter().zip(&after).map(|(before, after)| (before - after).powi(2)).sum::<f64>().sqrt();
+            let size = scale(kind, vector, &answer, &tree);
+            assert!(
+                off <= tolerance * size,
+                "{kind}: {vector} is off by {off} of {size}: {before:?}, {after:?} in {tree}"
+            );
+        }
+    }
+}
+
+fn converted(tree: Value) -> Result<Vec<u8>, ApiError> {
+    answer::convert(tree, &NEVER).map(|answer| answer.body)
+}
+
+/// The kinds of state, and to which part of its size each gives it back.
+const KINDS: [(&str, f64); 6] = [
+    ("ecef", 1e-14),
+    ("eci", 1e-9),
+    ("planet_relative", 1e-9),
+    ("geodetic", 1e-9),
+    ("inertial_flight_path", 1e-9),
+    ("orbital_elements", 1e-4),
+];
+
+/// The size of a vector, with which its rounding grows: of a place that of its altitude too, which is great at the planet's centre, and of
+/// the velocity that of the rotating frame, there or where rounding may bring the place.
+fn scale(kind: &str, vector: &str, answer: &Value, request: &Value) -> f64 {
+    let length = |vector: &str| numbers(&answer["ecef"][vector]).iter().map(|x| x * x).sum::<f64>().sqrt();
+    let rotation_rate = request["planet"]["rotation_rate"].as_f64().unwrap_or(7.3e-5);
+    match vector {
+        "position" => length(vector).max(answer[kind]["geodetic_altitude"].as_f64().unwrap_or_default().abs()),
+        _ => length(vector) + (rotation_rate * length("position")).abs(),
+    }
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    list.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+}
+
+/// What flies.
+#[derive(Clone, Copy)]
+enum Endpoint {
+    Simulate,
+    Analytic,
+}
+
+impl Endpoint {
+    fn answer(self, tree: Value, format: Format) -> Result<Vec<u8>, ApiError> {
+        let answer = match self {
+            Self::Simulate => answer::simulate(tree, format, ROW_LIMIT, &NEVER),
+            Self::Analytic => answer::analytic(tree, format, ROW_LIMIT, &NEVER),
+        };
+        answer.map(|answer| answer.body)
+    }
+
+    /// Whether a request is sound, and its flight takes many steps.
+    fn is_long(self, tree: &Value) -> bool {
+        let job = match self {
+            Self::Simulate => Job::try_from_tree(tree.clone(), Wanted::Answer),
+            Self::Analytic => AnalyticJob::try_from_tree(tree.clone(), Wanted::Answer).map(|analytic| analytic.job),
+        };
+        let Ok(job) = job else { return false };
+        let case = job.scenario.case().clone();
+        let solver = Solver { step_limit: STEP_LIMIT, ..case.solver };
+        let short = Scenario::new(Case { solver, ..case }).map(|short| arrival(&short, &NEVER));
+        matches!(short, Ok(Err(SimulationError::StepLimit { .. })))
+    }
+
+    fn schema(self) -> &'static Validator {
+        match self {
+            Self::Simulate => &SIMULATE,
+            Self::Analytic => &ANALYTIC,
+        }
+    }
+}
+
+static SIMULATE: LazyLock<Validator> = LazyLock::new(|| schema("SimulateResponse"));
+static ANALYTIC: LazyLock<Validator> = LazyLock::new(|| schema("AnalyticResponse"));
+static CONVERT: LazyLock<Validator> = LazyLock::new(|| schema("ConvertResponse"));
+static PROBLEM: LazyLock<Validator> = LazyLock::new(|| schema("Problem"));
+
+fn schema(name: &str) -> Validator {
+    let root = json!({"$ref": format!("#/components/schemas/{name}"), "components": document()["components"]});
+    good(jsonschema::draft202012::new(&root), name)
+}
+
+fn good<T, E: Debug>(result: Result<T, E>, what: impl std::fmt::Display) -> T {
+    result.unwrap_or_else(|error| panic!("{error:?} of {what}"))
+}
+
+/// The tree of an answer, in which no key is there twice.
+fn strict(answer: &[u8], request: &Value) -> Value {
+    good(parse(answer), request)
+}
+
+fn valid(schema: &Validator, answer: &Value, request: &Value) {
+    if let Err(fault) = schema.validate(answer) {
+        panic!("{}: {fault} in the answer to {request}", fault.instance_path());
+    }
+}
+
+/// The columns of rows have as many entries each, and their times increase.
+fn equally_long(rows: &Value, request: &Value) {
+    let columns = rows.as_object().into_iter().flatten();
+    let lengths: Vec<_> = columns.map(|(_, column)| column.as_array().map(Vec::len)).collect();
+    assert!(lengths.windows(2).all(|pair| pair[0] == pair[1]), "{lengths:?} for {request}");
+    let times = numbers(&rows["time"]);
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?} for {request}");
+}
+
+fn without_computing_time(mut answer: Value) -> Value {
+    answer["solver"]["elapsed"] = Value::Null;
+    answer
+}
+
+/// Every line has a cell for every name, a finite number or an instant; or nothing.
+fn is_table(csv: &[u8], request: &Value) {
+    let csv = good(std::str::from_utf8(csv), request);
+    let mut lines = csv.lines().map(|line| line.split(','));
+    let names: Vec<_> = lines.next().into_iter().flatten().collect();
+    for line in lines {
+        let cells: Vec<_> = line.collect();
+        assert_eq!(cells.len(), names.len(), "{request}");
+        for (name, cell) in names.iter().zip(cells) {
+            let finite = cell.parse::<f64>().is_ok_and(f64::is_finite);
+            assert!(finite || cell.is_empty() || *name == "utc", "{name} {cell} for {request}");
+        }
+    }
+}
+
+/// A refusal blames the request, and names places of it.
+fn refused(error: &ApiError, request: &Value) {
+    let problem = error.problem();
+    assert!((400..500).contains(&problem.status), "{problem:?} for {request}");
+    valid(&PROBLEM, &strict(&problem.to_json(), request), request);
+    for field in &problem.errors {
+        assert!(is_place(&field.pointer, request), "{:?} is no place of {request}", field.pointer);
+    }
+}
+
+/// Whether a JSON pointer is one, and names a value, a member that is missing, or one of such a member, which has a default.
+fn is_place(pointer: &str, tree: &Value) -> bool {
+    if !pointer.is_empty() && !pointer.starts_with('/') {
+        return false;
+    }
+    let mut place = Some(tree);
+    let mut missing = 0;
+    for token in pointer.split('/').skip(1) {
+        let plain = token.replace("~0", "").replace("~1", "");
+        if plain.contains('~') {
+            return false;
+        }
+        let token = token.replace("~1", "/").replace("~0", "~");
+        place = match place {
+            None => None,
+            Some(Value::Object(members)) => members.get(&token),
+            Some(Value::Array(elements)) => match token.parse::<usize>().ok().and_then(|index| elements.get(index)) {
+                None => return false,
+                element => element,
+            },
+            Some(_) => return false,
+        };
+        missing += usize::from(place.is_none());
+    }
+    missing <= 2
+}
