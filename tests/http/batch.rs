@@ -212,47 +212,56 @@ fn counted(count: &Arc<AtomicUsize>) -> Job {
 }
 
 #[tokio::test]
-async fn batches_leave_a_worker_to_single_jobs() {
+async fn batches_and_single_jobs_do_not_wait_for_each_other() {
     // Nobody waits longer than this for a worker that never comes.
-    let compute = compute(2, 8, Duration::from_secs(20));
-    let batch = || compute.run_batch("/simulate/batch", vec![endless_job(), endless_job()], LONG).unwrap();
-    let mut batches = [batch(), batch(), batch(), batch()];
-    for _ in 0..100 {
-        assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
+    let deadline = Duration::from_secs(20);
+    for workers in [1, 2] {
+        let compute = compute(workers, 8, deadline);
+        let batch = || compute.run_batch("/simulate/batch", vec![endless_job(), endless_job()], LONG).unwrap();
+        let mut batches = [batch(), batch(), batch(), batch()];
+        for _ in 0..100 {
+            assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
+        }
+        assert!(batches.iter_mut().all(|batch| batch.try_recv().is_err()), "a batch was finished");
+        drop(batches);
+        let single = || {
+            let compute = Arc::clone(&compute);
+            tokio::spawn(async move { compute.run("/simulate", endless).await })
+        };
+        let singles = [single(), single(), single()];
+        let count = Arc::new(AtomicUsize::new(0));
+        let jobs = (0..100).map(|_| counted(&count)).collect();
+        let mut batch = compute.run_batch("/simulate/batch", jobs, LONG).unwrap();
+        while let Some(result) = batch.recv().await {
+            result.unwrap();
+        }
+        assert_eq!(count.load(Ordering::SeqCst), 100);
+        assert!(singles.iter().all(|single| !single.is_finished()), "a single job was finished");
     }
-    assert!(batches.iter_mut().all(|batch| batch.try_recv().is_err()), "a batch was finished");
 }
 
 #[tokio::test]
-async fn with_one_worker_single_jobs_wait_for_one_case_of_a_batch() {
-    let compute = pool(Config { workers: 1, queue: 0, batches: 1, deadline: LONG, ..Config::default() });
+async fn batches_take_turns() {
+    let compute = compute(2, 8, LONG);
     let order = Arc::new(Mutex::new(Vec::new()));
-    let queued = Arc::new(AtomicBool::new(false));
-    let note = |what: &'static str| {
-        let (order, queued) = (Arc::clone(&order), Arc::clone(&queued));
-        move |_: &AtomicBool| {
-            while !queued.load(Ordering::SeqCst) {
-                std::thread::yield_now();
+    let jobs = |name: &'static str| -> Vec<_> {
+        let note = |_| {
+            let order = Arc::clone(&order);
+            move |_: &AtomicBool| {
+                order.lock().unwrap().push(name);
+                Ok(())
             }
-            order.lock().unwrap().push(what);
-            Ok(())
-        }
+        };
+        (0..3).map(note).collect()
     };
-    let mut batch = compute.run_batch("/simulate/batch", vec![note("case"); 3], LONG).unwrap();
-    // The first case is with the worker before the single job comes.
-    yield_now().await;
-    yield_now().await;
-    let single = {
-        let (compute, job) = (Arc::clone(&compute), note("single"));
-        tokio::spawn(async move { compute.run("/simulate", job).await })
-    };
-    while compute.has_room() {
-        yield_now().await;
+    let mut batches = ["first", "second"].map(|name| compute.run_batch("/simulate/batch", jobs(name), LONG).unwrap());
+    for batch in &mut batches {
+        while batch.recv().await.is_some() {}
     }
-    queued.store(true, Ordering::SeqCst);
-    single.await.unwrap().unwrap();
-    while batch.recv().await.is_some() {}
-    assert_eq!(*order.lock().unwrap(), ["case", "single", "case", "case"]);
+    let order = order.lock().unwrap();
+    // Each is a result ahead of who reads it, and the reader takes the first batch first.
+    assert_eq!(order[..2], ["first", "second"]);
+    assert_eq!(order.len(), 6);
 }
 
 #[tokio::test]
