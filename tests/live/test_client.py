@@ -44,7 +44,7 @@ def package(service, tmp_path_factory):
     command += ["--config", OPENAPI / "python-client.json", "--output-path", folder / "reentry_client", "--fail-on-warning"]
     # It calls ruff by its name.
     environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
-    result = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
+    result = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=5 * PATIENCE)
     assert result.returncode == 0, result.stdout
     assert re.fullmatch(r"Generating \S+\s*", result.stdout), f"the generator complains: {result.stdout}"
     return folder / "reentry_client"

@@ -22,7 +22,7 @@ def test_the_service_keeps_to_the_document(service, tmp_path):
     # The same requests in every run; a slow machine is no failure.
     command += ["--seed", "1", "--max-examples", str(EXAMPLES), "--generation-database", "none"]
     command += ["--suppress-health-check", "too_slow", "--request-timeout", "60"]
-    result = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600)
+    result = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=1200)
     print(result.stdout)
     assert result.returncode == 0
     for phase in ["Examples", "Coverage", "Fuzzing", "Stateful"]:
