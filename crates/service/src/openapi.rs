@@ -39,7 +39,7 @@ const ALTERNATIVES: [(&str, &[&str]); 6] = [
 ];
 
 /// Every failure that every endpoint may answer with.
-const FAILURES: [(&str, &str); 11] = [
+const FAILURES: [(&str, &str); 12] = [
     ("400", "Not JSON, duplicate keys, or an unknown query parameter."),
     ("404", "There is nothing at this path."),
     ("405", "The path does not know this method."),
@@ -48,6 +48,10 @@ const FAILURES: [(&str, &str); 11] = [
     ("413", "The body is too long."),
     ("415", "The body is not declared as JSON."),
     ("422", "Not a valid case, or a flight that cannot be finished; every fault with its pointer."),
+    (
+        "429",
+        "More requests than this client may send, where there is a rate limit; `Retry-After` says when to come back.",
+    ),
     ("500", "A fault of the service."),
     ("503", "Busy; `Retry-After` says when to come back."),
     ("504", "The time allowed ran out."),
@@ -79,7 +83,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
             }
         }
-        for path in ["/health/live", "/health/ready"] {
+        for path in ["/health/live", "/health/ready", "/metrics"] {
             add_failures(&mut paths[path]["get"], |status| status == "405");
         }
         add_examples(paths);
@@ -353,7 +357,7 @@ fn add_headers(paths: &mut Map<String, Value>) {
             match status.as_str() {
                 "405" => headers.push(("allow", "Allow")),
                 // Not that of `/health/ready`: who watches comes back anyway.
-                "503" if is_problem => headers.push(("retry-after", "RetryAfter")),
+                "429" | "503" if is_problem => headers.push(("retry-after", "RetryAfter")),
                 _ => {}
             }
             for (name, header) in headers {
