@@ -12,15 +12,15 @@ use crate::http::requests::{capsule, with, with_all};
 /// The limit of the service, bytes.
 const BODY_LIMIT: usize = 1 << 20;
 
-fn list(count: usize, entry: impl Fn(usize) -> Value) -> Value {
+fn list(count: u32, entry: impl Fn(u32) -> Value) -> Value {
     (0..count).map(entry).collect()
 }
 
-fn numbers(count: usize, first: f64, step: f64) -> Value {
-    list(count, |index| json!(first + step * index as f64))
+fn numbers(count: u32, first: f64, step: f64) -> Value {
+    list(count, |index| json!(first + step * f64::from(index)))
 }
 
-fn teeth(count: usize) -> Value {
+fn teeth(count: u32) -> Value {
     list(count, |index| json!(1 + index % 2))
 }
 
@@ -83,7 +83,7 @@ fn models() -> Vec<(&'static str, Value)> {
 /// As many events and conditions as there may be.
 fn events() -> Vec<(&'static str, Value)> {
     let condition =
-        |index: usize, quantity: &str| json!({"quantity": quantity, "falls_through": 5000.0 - 1e-3 * index as f64});
+        |index: u32, quantity: &str| json!({"quantity": quantity, "falls_through": 5000.0 - 1e-3 * f64::from(index)});
     let at_once = list(1000, |_| {
         json!({"when": {"quantity": "time", "rises_through": 0}, "then": {
             "delta_v": {"along": "normal", "value": 1e-3},
@@ -125,32 +125,34 @@ fn a_thousand_events_at_one_instant_are_one_turn() {
 #[test]
 fn of_a_thousand_conditions_in_a_row_each_is_met_at_its_value() {
     let values = [("altitude", 119e3, -100.0), ("speed", 7450.0, -20.0), ("flight_path_angle", -0.06, -1e-3)];
-    let event = |index: usize| {
-        let (quantity, first, step) = values[index % 3];
-        json!({"when": {"quantity": quantity, "falls_through": first + step * (index / 3) as f64}})
+    let value = |index: u32| {
+        let (quantity, first, step) = values[index as usize % 3];
+        (quantity, first + step * f64::from(index / 3))
+    };
+    let event = |index: u32| {
+        let (quantity, value) = value(index);
+        json!({"when": {"quantity": quantity, "falls_through": value}})
     };
     let solver = json!({"relative_tolerance": 1e-3});
     let request = with_all(&plain(), [("/events", list(1000, event)), ("/solver", solver)]);
     let answer: Value = serde_json::from_slice(&fly(&request, false).unwrap()).unwrap();
     let happened = answer["events"].as_array().unwrap();
     assert!(happened.len() > 900, "only {} happened", happened.len());
-    let order: Vec<_> = happened.iter().map(|event| event["time"].as_f64().unwrap()).collect();
-    assert!(order.is_sorted(), "{order:?}");
+    let indices = || happened.iter().map(|event| u32::try_from(event["index"].as_u64().unwrap()).unwrap());
     for of in 0..3 {
-        let indices = happened.iter().filter_map(|event| event["index"].as_u64()).filter(|index| index % 3 == of);
-        assert!(indices.is_sorted(), "{} is met out of its order", values[of as usize].0);
+        assert!(indices().filter(|index| index % 3 == of).is_sorted(), "{} is met out of its order", value(of).0);
     }
-    for event in happened {
-        let index = usize::try_from(event["index"].as_u64().unwrap()).unwrap();
-        let (quantity, first, step) = values[index % 3];
-        let (value, got) = (first + step * (index / 3) as f64, event["state"][quantity].as_f64().unwrap());
+    assert!(happened.iter().map(|event| event["time"].as_f64().unwrap()).is_sorted());
+    for (index, event) in indices().zip(happened) {
+        let (quantity, value) = value(index);
+        let got = event["state"][quantity].as_f64().unwrap();
         assert!((got - value).abs() < 1e-9 * value.abs().max(1.0), "{quantity} is {got}, not {value}");
     }
 }
 
 #[test]
 fn however_many_faults_there_are_a_thousand_are_told() {
-    let members = |count: usize| (0..count).map(|index| (format!("{index:x}"), json!(0))).collect::<Value>();
+    let members = |count: u32| (0..count).map(|index| (format!("{index:x}"), json!(0))).collect::<Value>();
     let events = list(1000, |_| json!({"a": 1, "b": 1, "c": 1, "when": {"d": 1}, "then": {"e": 1, "thrust": {}}}));
     let row = || list(1000, |_| Value::Null);
     let matrix = json!({"type": "alpha_mach_table", "angle_of_attack": numbers(100, -0.5, 0.01),

@@ -8,17 +8,23 @@ use crate::flights::config;
 
 #[test]
 fn the_parser_holds_on_its_corpus() {
-    corpus("parser").iter().for_each(|input| fuzzed::parser(input));
+    for input in corpus("parser") {
+        fuzzed::parser(&input);
+    }
 }
 
 #[test]
 fn flights_hold_on_their_corpus() {
-    corpus("simulate").iter().for_each(|input| fuzzed::simulate(input));
+    for input in corpus("simulate") {
+        fuzzed::simulate(&input);
+    }
 }
 
 #[test]
 fn conversions_hold_on_their_corpus() {
-    corpus("convert").iter().for_each(|input| fuzzed::convert(input));
+    for input in corpus("convert") {
+        fuzzed::convert(&input);
+    }
 }
 
 #[test]

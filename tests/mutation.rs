@@ -126,13 +126,12 @@ impl Mutator {
     /// Puts a part of another request at the same place.
     fn transplant(&self, tree: &mut Value, chance: &mut SmallRng) {
         let (Some(mut from), mut to) = (self.requests.choose(chance), tree) else { return };
-        loop {
-            let Value::Object(members) = from else { break };
-            let Some(name) = members.keys().collect::<Vec<_>>().choose(chance).copied() else { break };
-            let Value::Object(targets) = to else { break };
+        while let (Value::Object(members), true) = (from, to.is_object()) {
+            let names: Vec<_> = members.keys().collect();
+            let Some(name) = names.choose(chance).copied() else { break };
             from = &members[name];
-            let goes_on = from.is_object() && targets.contains_key(name) && chance.random_ratio(2, 3);
-            to = targets.entry(name.clone()).or_insert_with(|| from.clone());
+            let goes_on = from.is_object() && to.get(name).is_some() && chance.random_ratio(2, 3);
+            to = &mut to[name];
             if !goes_on {
                 break;
             }

@@ -23,7 +23,7 @@ pub struct Layer {
 /// Where the density of a layer at its top is not that of the next at its base, the density jumps there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
-    layers: Vec<Layer>,
+    all: Vec<Layer>,
     /// Where one layer ends and the next begins, m.
     boundaries: Vec<f64>,
     sensible_altitude: f64,
@@ -53,7 +53,7 @@ impl Layers {
         let boundaries: Vec<f64> = layers.iter().skip(1).map(|layer| layer.base_altitude).collect();
         let sensible_altitude = sensible_altitude(&layers, &boundaries);
         let scale_height = layers.iter().map(|layer| layer.scale_height).fold(f64::MAX, f64::min);
-        Self { layers, boundaries, sensible_altitude, scale_height }
+        Self { all: layers, boundaries, sensible_altitude, scale_height }
     }
 
     /// Seven layers near the U.S. Standard Atmosphere, 1976: at the bases, 0, 10, 43, 68, 82, 112 and 120 km, and at 130 km, their density
@@ -74,7 +74,7 @@ impl Layers {
 
     /// The layers, from the lowest to the highest.
     pub fn layers(&self) -> &[Layer] {
-        &self.layers
+        &self.all
     }
 
     /// Where one layer ends and the next begins, m, ascending.
@@ -85,7 +85,7 @@ impl Layers {
     /// Density, kg/m³, at an altitude, m, by the formula of a layer, as if it had no end.
     #[inline(always)]
     pub fn density<S: Scalar>(&self, layer: usize, altitude: S) -> S {
-        self.layers[layer].density_at(altitude)
+        self.all[layer].density_at(altitude)
     }
 
     /// The altitude, m, above which the density is less than e⁻³⁷ ≈ 10⁻¹⁶ of the greatest from altitude 0 on; 0 where there is no air.
