@@ -76,7 +76,7 @@ const BRIEF: Plan = Plan {
     flood: Duration::from_secs(1),
     capacity: Duration::from_secs(1),
     unloaded: Duration::from_millis(200),
-    connection: 1 << 20,
+    connection: 64 << 10,
     timed: false,
 };
 
@@ -112,7 +112,7 @@ async fn run(plan: &Plan) -> io::Result<bool> {
     Row::print_head(&kinds);
     for factor in plan.factors {
         let row = overload(&program, &connections, &kinds, (*factor, plan.flood), &usual, &mut chance).await?;
-        row.print(&usual, &kinds, plan);
+        row.print(&usual, plan);
         missed.extend(row.missed(&usual, &kinds, plan));
         others = others.max(row.times.others());
     }

@@ -10,7 +10,7 @@ use reentry_tests::loopback::{Program, machine_time, percentile, processor_time}
 use crate::Plan;
 use crate::flood::{Connections, Flood};
 use crate::health::{Health, Recovery, ask_for};
-use crate::mix::{CASES, Kind, SHORT, Tally, draw};
+use crate::mix::{Kind, SHORT, Tally, draw};
 
 /// How many times its unloaded value the p99 may be, beside what the queue is worth.
 const GREATEST_SLOWDOWN: f64 = 3.0;
@@ -38,8 +38,8 @@ pub(crate) struct Usual {
     /// Resident, bytes.
     memory: u64,
     workers: usize,
-    /// What the queue is worth on average, ms: as many requests wait as may, and the workers serve the mix at the
-    /// capacity.
+    /// What the queue is worth on average, ms: as many requests wait as may, and the workers serve the mix at their share
+    /// of the capacity, beside the threads that batches have.
     queue: f64,
     /// What the worst of a hundred queues is worth, ms.
     worst_queue: f64,
@@ -66,10 +66,12 @@ impl Usual {
             tallies.push(tally);
         }
         let config = Config::default();
-        let queue = 1e3 * config.queue as f64 / capacity;
+        let workers = config.workers();
+        let with_batches = workers + workers.saturating_sub(1).max(1);
+        let queue = 1e3 * config.queue as f64 / capacity * with_batches as f64 / workers as f64;
         let worst_queue = queue * spread(&tallies, kinds, config.queue, chance);
         let health = watch.stop().await?;
-        let (memory, workers) = (program.memory("VmRSS")?, config.workers());
+        let memory = program.memory("VmRSS")?;
         Ok(Self { capacity, tallies, health, memory, workers, queue, worst_queue })
     }
 
@@ -81,12 +83,9 @@ impl Usual {
     /// What the p99 of a kind may be, ms.
     ///
     /// Who is accepted waits for those in the queue, and the worst of a hundred waits for the worst of a hundred
-    /// queues. A batch may wait for an average queue with each of its cases, as singles would; for the other batches
-    /// under way it is given no more.
-    #[expect(clippy::cast_precision_loss, reason = "cases are far below 2^52")]
-    fn latency_bar(&self, position: usize, kind: &Kind) -> f64 {
-        let wait = if kind.is_batch() { CASES as f64 * self.queue } else { self.worst_queue };
-        GREATEST_SLOWDOWN * self.tallies[position].percentile(99) + wait
+    /// queues. A batch waits for other batches, and is given no more for that.
+    fn latency_bar(&self, position: usize) -> f64 {
+        GREATEST_SLOWDOWN * self.tallies[position].percentile(99) + self.worst_queue
     }
 
     /// What may be resident, bytes.
@@ -192,14 +191,15 @@ impl Row {
     }
 
     /// Its line of the table; where there is a bar, beside it.
-    pub(crate) fn print(&self, usual: &Usual, kinds: &[Kind], plan: &Plan) {
+    pub(crate) fn print(&self, usual: &Usual, plan: &Plan) {
         let Flood { tallies, not_sent, rate, connections, .. } = &self.flood;
         let of = |count: &dyn Fn(&Tally) -> usize| tallies.iter().map(count).sum::<usize>();
         let served = of(&|tally| tally.served.len());
         let refused = of(&|tally| tally.refused);
-        let latencies = kinds.iter().zip(tallies).enumerate().map(|(position, (kind, tally))| {
-            format!("{:.0} of {:.0} ms", tally.percentile(99), usual.latency_bar(position, kind))
-        });
+        let latencies = tallies
+            .iter()
+            .enumerate()
+            .map(|(position, tally)| format!("{:.0} of {:.0} ms", tally.percentile(99), usual.latency_bar(position)));
         let latencies = latencies.collect::<Vec<_>>().join(" | ");
         let [p99, longest] = [99, 100].map(|percent| self.health.percentile(percent));
         let memory = format!("{} of {}", megabytes(self.memory), megabytes(usual.memory_bar(*connections, plan)));
@@ -255,7 +255,7 @@ impl Row {
         let mut held = Vec::new();
         for (position, kind) in kinds.iter().enumerate() {
             let p99 = self.flood.tallies[position].percentile(99);
-            held.push((format!("p99 of {}, ms", kind.name), p99, usual.latency_bar(position, kind)));
+            held.push((format!("p99 of {}, ms", kind.name), p99, usual.latency_bar(position)));
         }
         held.push(("p99 of /health/live, ms".to_owned(), self.health.percentile(99), GREATEST_HEALTH_P99));
         held.push(("recovery, s".to_owned(), self.recovery.calm, LONGEST_RECOVERY));

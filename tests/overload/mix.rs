@@ -94,11 +94,6 @@ enum End {
 }
 
 impl Kind {
-    /// Whether it is a batch, whose cases wait one after another.
-    pub(crate) fn is_batch(&self) -> bool {
-        self.lines.is_some()
-    }
-
     /// What to make of an answer, or of none.
     fn judge(&self, reply: &io::Result<Reply>) -> End {
         let reply = match reply {
