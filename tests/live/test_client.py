@@ -17,7 +17,7 @@ CASES = Path(__file__).parents[1] / "cases/thesis"
 OPENAPI = Path(__file__).parents[2] / "openapi"
 OPERATIONS = {
     "reentry": ["analytic", "convert", "simulate", "simulate_batch", "validation"],
-    "health": ["live", "ready"],
+    "health": ["live", "metrics", "ready"],
 }
 
 
