@@ -110,11 +110,17 @@ async fn the_cases_of_a_batch_are_counted_by_outcome() {
     assert_eq!(count(&metrics, "reentry_integration_steps_total{route=\"/simulate/batch\"}"), 2.0 * steps);
 }
 
-#[tokio::test]
-async fn jobs_that_are_given_up_are_counted_by_cause() {
-    let config = Config { workers: 1, queue: 3, deadline: Duration::from_millis(200), ..Config::default() };
+/// A service with one worker, and what it counts.
+fn with_one_worker(deadline: Duration) -> (AppState, impl Fn(&str) -> f64) {
+    let config = Config { workers: 1, queue: 3, deadline, ..Config::default() };
     let app = AppState::new(config, LostLines::default()).unwrap();
-    let count = |name: &str| count(&read(&app.metrics.text(app.now()).unwrap()), name);
+    let of = app.clone();
+    (app, move |name: &str| count(&read(&of.metrics.text(of.now()).unwrap()), name))
+}
+
+#[tokio::test]
+async fn jobs_of_clients_that_have_gone_are_counted() {
+    let (app, count) = with_one_worker(Duration::from_mins(5));
     let client = {
         let compute = Arc::clone(&app.compute);
         tokio::spawn(async move { compute.run("/simulate", endless).await })
@@ -130,6 +136,11 @@ async fn jobs_that_are_given_up_are_counted_by_cause() {
     free_again(|| async { count("reentry_jobs_running") == 0.0 && count("reentry_jobs_queued") == 0.0 }).await;
     assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"disconnect\"}"), 1.0);
     assert_eq!(count("reentry_cancellations_total{route=\"/convert\",cause=\"disconnect\"}"), 1.0);
+}
+
+#[tokio::test]
+async fn jobs_beyond_their_deadline_are_counted() {
+    let (app, count) = with_one_worker(Duration::from_millis(20));
     assert!(app.compute.run("/simulate", endless).await.is_err());
     free_again(|| async { count("reentry_jobs_running") == 0.0 }).await;
     assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"deadline\"}"), 1.0);
@@ -151,11 +162,16 @@ async fn answers_are_held_until_they_are_taken_and_a_full_memory_refuses_more() 
     assert!(held > 1000, "{held}");
     let Ok(second) = router.clone().oneshot(request()).await;
     assert_eq!(second.status(), 503);
+    let ready = || router.clone().oneshot(Request::get("/health/ready").body(Body::empty()).unwrap());
+    let Ok(busy) = ready().await;
+    assert_eq!(busy.status(), 503);
     let body = first.into_body().collect().await.unwrap().to_bytes();
     assert_eq!(body.len(), held);
     drop(body);
     assert_eq!(app.memory.held(), 0);
-    let Ok(third) = router.oneshot(request()).await;
+    let Ok(ok) = ready().await;
+    assert_eq!(ok.status(), 200);
+    let Ok(third) = router.clone().oneshot(request()).await;
     assert_eq!(third.status(), 200);
 }
 

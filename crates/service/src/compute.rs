@@ -247,11 +247,11 @@ impl Running<'_> {
 
 impl Drop for Running<'_> {
     fn drop(&mut self) {
-        self.metrics.job_over(self.route, self.start.elapsed());
         if !self.is_wanted() {
             let is_late = self.call.is_late.load(Ordering::Relaxed);
             self.metrics.job_cancelled(self.route, if is_late { "deadline" } else { "disconnect" });
         }
+        self.metrics.job_over(self.route, self.start.elapsed());
     }
 }
 

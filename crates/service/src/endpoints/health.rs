@@ -11,7 +11,7 @@ use crate::state::AppState;
 /// How the service is.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Health {
-    /// `ok`, `busy` (no place for another job) or `draining` (going down).
+    /// `ok`, `busy` (no place for another job, or no memory for its answer) or `draining` (going down).
     status: &'static str,
 }
 
@@ -39,7 +39,7 @@ pub async fn live() -> Json<Health> {
 pub async fn ready(State(app): State<AppState>) -> (StatusCode, Json<Health>) {
     let (code, status) = if app.is_draining() {
         (StatusCode::SERVICE_UNAVAILABLE, "draining")
-    } else if app.compute.has_room() {
+    } else if app.compute.has_room() && !app.memory.is_full() {
         (StatusCode::OK, "ok")
     } else {
         (StatusCode::SERVICE_UNAVAILABLE, "busy")
