@@ -107,7 +107,9 @@ impl Stagnation {
     /// q̇ = ε σ T⁴
     /// ```
     pub fn wall_temperature(&self, heat_flux: f64) -> f64 {
-        (heat_flux / (self.heating.emissivity * STEFAN_BOLTZMANN)).sqrt().sqrt()
+        // Root by root: of the smallest emissivities there are, the product with σ is 0.
+        let fourth_root = |number: f64| number.sqrt().sqrt();
+        fourth_root(heat_flux / STEFAN_BOLTZMANN) / fourth_root(self.heating.emissivity)
     }
 }
 
