@@ -47,10 +47,13 @@ impl Ecef {
 
     /// The planet-fixed vectors.
     pub fn from_core(state: &PlanetFixed<f64>, sidereal_time: f64) -> Self {
+        // The speed was checked, and a part of it may exceed it by a rounding: the answer can be sent back.
+        let velocity =
+            <[f64; 3]>::from(state.velocity).map(|part| part.clamp(Bound::VELOCITY.minimum, Bound::VELOCITY.maximum));
         Self {
             kind: "ecef",
             position: state.position.into(),
-            velocity: state.velocity.into(),
+            velocity,
             sidereal_time: Some(SiderealTime(sidereal_time)),
         }
     }
