@@ -91,17 +91,19 @@ impl Lines {
         if matches!(self.encoder, Encoder::Identity(_)) {
             return Ok((self, line));
         }
-        if line.len() <= SHORT {
-            return self.write(&line, &AtomicBool::new(false));
-        }
-        let deadline = app.config.deadline;
-        app.compute.share(route, move |interrupt| self.write(&line, interrupt), deadline).await
+        let (lines, coded) = if line.len() <= SHORT {
+            self.write(&line, &AtomicBool::new(false))?
+        } else {
+            let deadline = app.config.deadline;
+            app.compute.share(route, move |interrupt| self.write(&line, interrupt), deadline).await?
+        };
+        Ok((lines, app.memory.hold(coded)))
     }
 
-    fn write(mut self, line: &[u8], interrupt: &AtomicBool) -> Result<(Self, Bytes), ApiError> {
+    fn write(mut self, line: &[u8], interrupt: &AtomicBool) -> Result<(Self, Vec<u8>), ApiError> {
         self.encoder.write(line, interrupt).map_err(|_| ApiError::Interrupted)?;
         let coded = self.encoder.take().map_err(|_| ApiError::Internal)?;
-        Ok((self, coded.into()))
+        Ok((self, coded))
     }
 
     /// What follows the last line.
