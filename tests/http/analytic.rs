@@ -117,7 +117,7 @@ async fn the_end_is_located_between_the_rows_and_said_why() {
     let answer = compare(&case("steep_ballistic")).await;
     assert_eq!(answer["valid"]["from_altitude"], answer["simulated"]["altitude"][0]);
     assert_eq!(answer["valid"]["to_altitude"], answer["simulated"]["altitude"][39]);
-    assert_eq!(answer["valid"]["ends_because"], "the flight ends at the stop altitude");
+    assert_eq!(answer["valid"]["ends_because"], "the flight ends at the surface");
     let stopped = compare(&with(&case("steep_ballistic"), "/stop", json!({"time": 10}))).await;
     assert_eq!(stopped["valid"]["ends_because"], "the flight ends at the stop time");
 

@@ -36,7 +36,7 @@ async fn a_flight_that_sinks_or_rests_on_the_stop_altitude_ends_at_once() {
         for (speed, angle) in [(100.0, -0.1), (100.0, -FRAC_PI_2), (0.0, 0.0), (0.0, 0.5), (100.0, 0.0)] {
             let answer = fly(&near_stop(height, speed, angle)).await;
             let what = format!("{height} m above, {speed} m/s at {angle}");
-            assert_eq!(answer["termination"], "surface_impact", "{what}");
+            assert_eq!(answer["termination"], "stop_altitude", "{what}");
             assert_eq!(answer["trajectory"]["time"], json!([0.0]), "{what}");
             assert_eq!(answer["initial_state"], answer["final_state"], "{what}");
             for peak in answer["peaks"].as_object().unwrap().values() {
@@ -57,7 +57,7 @@ async fn a_flight_that_rises_from_the_stop_altitude_flies() {
         ] {
             let answer = fly(&near_stop(height, speed, angle)).await;
             let what = format!("{height} m above, {speed} m/s at {angle}");
-            assert_eq!(answer["termination"], "surface_impact", "{what}");
+            assert_eq!(answer["termination"], "stop_altitude", "{what}");
             assert!(number(&answer["final_state"]["time"]) > 0.0, "{what}");
             check::near(&what, number(&answer["final_state"]["altitude"]), 500.0, tolerance);
             let risen = number(&answer["peaks"]["altitude"]["value"]) - number(&answer["initial_state"]["altitude"]);
@@ -78,7 +78,7 @@ async fn a_level_flight_faster_than_a_satellite_rises_from_the_stop_altitude() {
 #[tokio::test]
 async fn beyond_a_millimetre_above_a_flight_at_rest_falls() {
     let answer = fly(&near_stop(0.001_1, 0.0, 0.0)).await;
-    assert_eq!(answer["termination"], "surface_impact");
+    assert_eq!(answer["termination"], "stop_altitude");
     // h = g t²/2 with g ≈ 9.78 m/s² at the equator's latitude of 10 degrees, centrifugal relief included.
     check::relative("fall", number(&answer["final_state"]["time"]), (2.0 * 0.001_1_f64 / 9.77).sqrt(), 0.01);
 }
@@ -103,7 +103,7 @@ async fn an_orbit_without_air_ends_with_its_time() {
 async fn a_negative_stop_altitude_is_reached() {
     for stop in [-100.0, -20_000.0] {
         let answer = fly(&with(&capsule(), "/stop", json!({"altitude": stop}))).await;
-        assert_eq!(answer["termination"], "surface_impact");
+        assert_eq!(answer["termination"], "stop_altitude");
         check::near("altitude of the end", number(&answer["final_state"]["altitude"]), stop, 1e-6);
         assert!(number(&answer["final_state"]["density"]) > 1.54793);
     }

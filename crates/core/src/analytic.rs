@@ -74,7 +74,8 @@ pub enum End {
 impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Flight(Termination::SurfaceImpact) => write!(f, "the flight ends at the stop altitude"),
+            Self::Flight(Termination::SurfaceImpact) => write!(f, "the flight ends at the surface"),
+            Self::Flight(Termination::StopAltitude) => write!(f, "the flight ends at the stop altitude"),
             Self::Flight(Termination::TimeLimit) => write!(f, "the flight ends at the stop time"),
             Self::Flight(Termination::Condition(_)) => write!(f, "the flight ends by a condition"),
             Self::Flight(Termination::AtmosphereExit) => write!(f, "the flight ends at the ceiling"),

@@ -219,7 +219,7 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
     let place = Place { time: end.time, rates: motion.derivative(end.time.into(), &state), state };
     let condition = match arrival.termination {
         Termination::TimeLimit => None,
-        Termination::SurfaceImpact => Some(Quantity::Altitude),
+        Termination::SurfaceImpact | Termination::StopAltitude => Some(Quantity::Altitude),
         Termination::AtmosphereExit => flight.case.stop.ceiling().map(|condition| condition.quantity),
         Termination::Condition(index) => flight.case.stop.when.get(index).map(|condition| condition.quantity),
     };

@@ -21,8 +21,10 @@ pub use crate::motion::Lookup;
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
-    /// The stop altitude was crossed downwards.
+    /// The surface, a stop altitude of 0, was crossed downwards.
     SurfaceImpact,
+    /// A stop altitude other than 0 was crossed downwards.
+    StopAltitude,
     /// The stop time was reached.
     TimeLimit,
     /// The condition of this place in the list was met.

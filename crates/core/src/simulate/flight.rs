@@ -75,8 +75,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
-        let ending = self.scenario.ends_at_start().then_some(Termination::SurfaceImpact);
+        let ending = self.scenario.ends_at_start().then(|| self.ground());
         if self.alarms.is_empty() { Ok(ending.map(|ending| self.arrival(ending))) } else { self.turn(None, ending) }
+    }
+
+    /// How a flight ends on the stop altitude.
+    fn ground(&self) -> Termination {
+        if self.scenario.case().stop.altitude == 0.0 { Termination::SurfaceImpact } else { Termination::StopAltitude }
     }
 
     /// When the next step must end at the latest, s: with the time of the flight, with a stretch of a schedule, where a condition on
@@ -142,7 +147,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let mut exit = None;
         let turns = cut.is_some() || self.alarms.is_due() || self.time >= horizon;
         match cut {
-            Some(Cut::Ground) => ending = Some(Termination::SurfaceImpact),
+            Some(Cut::Ground) => ending = Some(self.ground()),
             Some(Cut::Exit(left)) => exit = Some(left),
             Some(Cut::Alarm(index)) => self.alarms.meet(index),
             None => {}

@@ -21,8 +21,10 @@ use super::wind::Wind;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Termination {
-    /// The stop altitude was crossed downwards.
+    /// The surface was crossed downwards: `stop.altitude` is 0.
     SurfaceImpact,
+    /// `stop.altitude`, which is not 0, was crossed downwards.
+    StopAltitude,
     /// The stop time was reached.
     TimeLimit,
     /// A condition of `stop.when` was met: that of the index in `condition`.
@@ -211,6 +213,7 @@ impl SimulateResponse {
         let events = (!request.events.is_empty()).then(|| flight.events().map(report).collect());
         let (termination, condition) = match flight.termination() {
             CoreTermination::SurfaceImpact => (Termination::SurfaceImpact, None),
+            CoreTermination::StopAltitude => (Termination::StopAltitude, None),
             CoreTermination::TimeLimit => (Termination::TimeLimit, None),
             CoreTermination::Condition(index) => (Termination::Condition, Some(index)),
             CoreTermination::AtmosphereExit => (Termination::AtmosphereExit, None),

@@ -13,6 +13,7 @@ export interface Figure {
 
 const ENDS = {
   surface_impact: 'Impact',
+  stop_altitude: 'Stop altitude',
   time_limit: 'Time limit',
   condition: 'Stop condition',
   atmosphere_exit: 'Exit',

@@ -47,6 +47,7 @@ const PEAKS: Partial<Record<keyof Answer['peaks'], string>> = {
 
 const ENDS: Record<Answer['termination'], string> = {
   surface_impact: 'impact',
+  stop_altitude: 'stop altitude',
   time_limit: 'end of time',
   condition: 'stop condition',
   atmosphere_exit: 'exit',
