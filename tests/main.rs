@@ -6,6 +6,7 @@ mod analytic;
 mod atmosphere;
 mod check;
 mod conversions;
+mod departures;
 mod events;
 mod expensive;
 mod flights;

@@ -265,7 +265,7 @@ fn sensitivities_hold_across_changes_of_formula() {
 #[test]
 fn sensitivities_hold_across_events() {
     let when = |quantity, value| Condition { quantity, value, direction: Direction::Falling };
-    let event = |when, then| vec![Event { when, then }];
+    let event = |when: Condition, then| vec![Event { when: when.into(), then }];
     let aerodynamics = Some(Aerodynamics::Constant { lift_coefficient: 0.1, drag_coefficient: 0.9 });
     let opens = Effect { mass: Some(500.0), reference_area: Some(0.5), aerodynamics, ..Effect::default() };
     let lighter = Effect { mass: Some(600.0), ..Effect::default() };
@@ -296,17 +296,17 @@ fn sensitivities_hold_across_events() {
             "a burn by the time",
             vec![
                 Event {
-                    when: Condition { direction: Direction::Rising, ..when(Quantity::Time, 20.0) },
+                    when: Condition { direction: Direction::Rising, ..when(Quantity::Time, 20.0) }.into(),
                     then: burns(Axis::Radial, None),
                 },
-                Event { when: altitude(30e3), then: lighter },
-                Event { when: altitude(20e3), then: off },
+                Event { when: altitude(30e3).into(), then: lighter },
+                Event { when: altitude(20e3).into(), then: off },
             ],
         ),
     ] {
         agrees_with_differences(what, &Case { events, ..target_2() });
     }
-    let stopped = |when| Case { stop: Stop { when: vec![when], ..Stop::default() }, ..target_2() };
+    let stopped = |when: Condition| Case { stop: Stop { when: vec![when.into()], ..Stop::default() }, ..target_2() };
     agrees_with_differences("stopped by speed", &stopped(when(Quantity::Speed, 2000.0)));
     agrees_with_differences(
         "stopped by load",

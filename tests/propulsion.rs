@@ -18,7 +18,7 @@ const THRUST: Thrust = Thrust { along: Axis::Velocity, force: -20_000.0, specifi
 
 pub(crate) fn at(time: f64, then: Effect) -> Event {
     let when = Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising };
-    Event { when, then }
+    Event { when: when.into(), then }
 }
 
 pub(crate) fn switch_on(thrust: Thrust) -> Effect {

@@ -68,7 +68,7 @@ fn a_step_in_altitude_is_two_flights() {
     let whole = fly(&with_tolerance(steps, 1e-12));
     let stop = Stop { altitude: 50e3, ..Stop::default() };
     let first = fly(&with_tolerance(Case { control: Control::banked(0.9), stop, ..glide() }, 1e-12));
-    assert_eq!(first.termination(), Termination::SurfaceImpact);
+    assert_eq!(first.termination(), Termination::StopAltitude);
     let second = fly(&with_tolerance(Case { control: Control::banked(0.2), ..end(&first) }, 1e-12));
     near("time", whole.end_time(), first.end_time() + second.end_time(), 1e-6);
     assert!(miss(&whole, &second) < 1e-4, "{} m", miss(&whole, &second));

@@ -56,7 +56,7 @@ fn a_flight_that_is_over_at_once_is_in_balance() {
     let condition = Condition { quantity: Quantity::FlightPathAngle, value: -0.05, direction: Direction::Falling };
     let start =
         FlightPath { speed: 0.0, flight_path_angle: 0.0, ..FlightPath::from_planet_fixed(&target_2().initial_state) };
-    let stop = Stop { when: vec![condition], ..Stop::default() };
+    let stop = Stop { when: vec![condition.into()], ..Stop::default() };
     let Verification { energy_drift, drag_work, thrust_work, .. } =
         verified(&Case { initial_state: start.to_planet_fixed(), stop, ..target_2() });
     assert!([energy_drift, drag_work, thrust_work].iter().all(|work| work.abs() < 1e-6));

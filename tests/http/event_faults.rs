@@ -230,7 +230,7 @@ async fn all_faults_of_events_and_heating_come_in_one_answer() {
             (
                 "/events",
                 json!([
-                    {"name": 1, "when": {"quantity": "mass", "rises_through": 1}, "then": {"mass": 0, "reference_area": -1}},
+                    {"name": 1, "when": {"quantity": "size", "rises_through": 1}, "then": {"mass": 0, "reference_area": -1}},
                     {"when": {"quantity": "mach", "rises_through": -1}, "then": {"delta_v": {"along": "up", "value": 1e7}}},
                     {"then": {"thrust": {"along": "velocity", "value": "full", "specific_impulse": 0, "propellant": 0}}},
                     {"when": {"quantity": "time", "falls_through": 1e10}, "then": {"aerodynamics": {"type": "brick"}}},
@@ -261,7 +261,7 @@ async fn all_faults_of_events_and_heating_come_in_one_answer() {
         ("/events/3/then/aerodynamics/type", "got \"brick\""),
         ("/events/4", "must be an object, got a string"),
         ("/stop/ceiling", "must be between -1e12 and 1e12, got "),
-        ("/stop/when/0/quantity", "is required"),
+        ("/stop/when/0", "must have exactly one of quantity, event, got none of them"),
         ("/stop/when/1", "must have exactly one of falls_through, rises_through, got none of them"),
     ];
     steady.refused_at("/simulate", &request, &expected).await;

@@ -325,7 +325,7 @@ async fn what_happens_at_the_end_happens_and_the_stop_altitude_or_time_ends_the_
         json!({"altitude": 1e4, "when": [ground]}),
     );
     let answer = fly(&case).await;
-    assert_eq!((&answer["termination"], answer.get("condition")), (&json!("surface_impact"), None));
+    assert_eq!((&answer["termination"], answer.get("condition")), (&json!("stop_altitude"), None));
     assert_eq!((order(&answer), &answer["final_state"]["mass"]), (vec![0], &json!(100.0)));
     assert_eq!(answer["events"][0]["time"], answer["final_state"]["time"]);
 

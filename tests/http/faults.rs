@@ -143,7 +143,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
                 "/heating/radiative" => "must be one of none, tauber_sutton, got ",
                 "/events/0/when/quantity" | "/stop/when/0/quantity" => {
-                    "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, got "
+                    "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, mass, "
                 }
                 "/events/0/then/delta_v/along" | "/events/0/then/thrust/along" => {
                     "must be one of velocity, radial, normal, got "

@@ -154,7 +154,7 @@ const CASE: [Row; 29] = [
     ("/stop/time", Optional, Number(Range { low: Open(0.0), high: Closed(1e9) })),
     ("/stop/ceiling", Optional, Number(DISTANCE)),
     ("/stop/when", Optional, Objects),
-    ("/stop/when/0/quantity", Required, Name),
+    ("/stop/when/0/quantity", Alternative, Name),
     ("/output", Optional, Object),
     ("/solver", Optional, Object),
 ];
@@ -240,7 +240,7 @@ const EVENT: [Row; 19] = [
     ("", Optional, Objects),
     ("/0/name", Optional, Text),
     ("/0/when", Required, Object),
-    ("/0/when/quantity", Required, Name),
+    ("/0/when/quantity", Alternative, Name),
     ("/0/then", Optional, Object),
     ("/0/then/mass", Optional, Number(POSITIVE)),
     ("/0/then/reference_area", Optional, Number(NOT_NEGATIVE)),

@@ -6,20 +6,58 @@ use crate::vehicle::Aerodynamics;
 
 /// Something that happens once in a flight.
 ///
-/// It happens at the first instant at which its condition is met, and never again.
+/// It happens at the first instant at which its trigger is met, and never again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// When.
-    pub when: Condition,
+    pub when: Trigger,
     /// What; nothing at all makes it a mark.
     pub then: Effect,
+}
+
+/// What an event, or the end of a flight, waits for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trigger {
+    /// A quantity passes a value.
+    Condition(Condition),
+    /// So much time has passed since another event happened.
+    After {
+        /// The place of the other event in the list.
+        event: usize,
+        /// s.
+        delay: f64,
+    },
+}
+
+impl From<Condition> for Trigger {
+    fn from(condition: Condition) -> Self {
+        Self::Condition(condition)
+    }
+}
+
+impl Trigger {
+    /// The place of the event that is waited for, if one is.
+    pub fn awaited(&self) -> Option<usize> {
+        match *self {
+            Self::Condition(_) => None,
+            Self::After { event, .. } => Some(event),
+        }
+    }
+
+    /// The condition, if it is one.
+    pub fn condition(&self) -> Option<&Condition> {
+        match self {
+            Self::Condition(condition) => Some(condition),
+            Self::After { .. } => None,
+        }
+    }
 }
 
 /// A quantity passes a value.
 ///
 /// The condition is met at the first instant at which the quantity, having been on the near side of the value, is on it or beyond,
 /// whether it moved there or jumped, as the load factor does where a parachute opens. A quantity that begins on the value meets it
-/// where it moves on to the far side; one that begins beyond must come back first.
+/// at once if it moves on to the far side, however slowly; one that begins beyond must come back first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Which.
@@ -47,6 +85,34 @@ pub enum Quantity {
     LoadFactor,
     /// Of the velocity relative to the planet, rad.
     FlightPathAngle,
+    /// Of the vehicle, kg.
+    Mass,
+    /// Relative to the air, m/s.
+    AirSpeed,
+    /// Relative to inertial space, m/s.
+    InertialSpeed,
+    /// Half the squared inertial speed and the potential of the planet's gravity, J/kg.
+    SpecificEnergy,
+    /// Of the osculating orbit, above the equatorial radius, m; 1e13 m where the orbit is not bound.
+    ApoapsisAltitude,
+    /// Of the osculating orbit, above the equatorial radius, m.
+    PeriapsisAltitude,
+    /// Of the osculating orbit to the equator, rad.
+    Inclination,
+    /// Into the stagnation point, W/m².
+    HeatFlux,
+    /// Into the stagnation point since the start, J/m².
+    HeatLoad,
+    /// At which the wall radiates what it gets, K.
+    WallTemperature,
+    /// Along the great circle of the initial heading, m; it goes on beyond half the globe.
+    Downrange,
+    /// The great circle from the initial ground point, m.
+    GroundRange,
+    /// -dV/dt of the speed relative to the planet, m/s².
+    Deceleration,
+    /// Of the air, kg/m³.
+    Density,
 }
 
 /// A side of a value.
@@ -84,7 +150,7 @@ pub enum Engine {
 
 impl Quantity {
     /// All of them.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 21] = [
         Self::Time,
         Self::Altitude,
         Self::Speed,
@@ -92,7 +158,42 @@ impl Quantity {
         Self::DynamicPressure,
         Self::LoadFactor,
         Self::FlightPathAngle,
+        Self::Mass,
+        Self::AirSpeed,
+        Self::InertialSpeed,
+        Self::SpecificEnergy,
+        Self::ApoapsisAltitude,
+        Self::PeriapsisAltitude,
+        Self::Inclination,
+        Self::HeatFlux,
+        Self::HeatLoad,
+        Self::WallTemperature,
+        Self::Downrange,
+        Self::GroundRange,
+        Self::Deceleration,
+        Self::Density,
     ];
+
+    /// Whether it is an angle.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::FlightPathAngle | Self::Inclination)
+    }
+
+    /// Whether it exists only where heating is asked for.
+    pub fn is_of_heating(self) -> bool {
+        matches!(self, Self::HeatFlux | Self::HeatLoad | Self::WallTemperature)
+    }
+
+    /// The size below which it is told as a small number, in its unit.
+    fn scale(self) -> f64 {
+        match self {
+            Self::Altitude | Self::ApoapsisAltitude | Self::PeriapsisAltitude | Self::Downrange | Self::GroundRange => {
+                1e3
+            }
+            Self::Density => 1e-9,
+            _ => 1.0,
+        }
+    }
 }
 
 impl Condition {
@@ -108,7 +209,7 @@ impl Condition {
     pub fn resolution(&self) -> f64 {
         match self.quantity {
             Quantity::Time => 1e-9,
-            _ => 1e-9 * self.value.abs().max(1.0),
+            quantity => 1e-9 * self.value.abs().max(quantity.scale()),
         }
     }
 }

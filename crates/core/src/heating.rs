@@ -106,10 +106,9 @@ impl Stagnation {
     /// ```text
     /// q̇ = ε σ T⁴
     /// ```
-    pub fn wall_temperature(&self, heat_flux: f64) -> f64 {
+    pub fn wall_temperature<S: Scalar>(&self, heat_flux: S) -> S {
         // Root by root: of the smallest emissivities there are, the product with σ is 0.
-        let fourth_root = |number: f64| number.sqrt().sqrt();
-        fourth_root(heat_flux / STEFAN_BOLTZMANN) / fourth_root(self.heating.emissivity)
+        (heat_flux / STEFAN_BOLTZMANN).sqrt().sqrt() / self.heating.emissivity.sqrt().sqrt()
     }
 }
 

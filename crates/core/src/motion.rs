@@ -3,6 +3,7 @@
 mod cartesian;
 mod directions;
 mod loads;
+mod quantity;
 mod regime;
 mod spherical;
 
@@ -11,6 +12,7 @@ pub use loads::Loads;
 pub use regime::{Lookup, Regime, Switch};
 pub use spherical::Spherical;
 
+pub(crate) use quantity::Moment;
 pub(crate) use regime::{Chatter, Quantity};
 
 use nalgebra::Vector3;
@@ -43,6 +45,8 @@ pub struct Forces<P = f64> {
     models: Models,
     parameters: Parameters<P>,
     area_over_mass: P,
+    /// Of the vehicle at the instant from which a burn counts, kg; where the parameters have ratios of it, not theirs.
+    mass: P,
     sin_cos_bank: (P, P),
     burn: Option<Burn<P>>,
     regime: Regime,
@@ -114,7 +118,13 @@ impl<P: Scalar> Burn<P> {
     /// The mass at the instant over the mass at a time, s: the rate at which it is burnt is constant.
     #[inline(always)]
     fn lightness<S: Over<P>>(&self, time: S) -> S {
-        (S::one() - (time + -self.since) * self.flow).recip()
+        self.mass_left(time).recip()
+    }
+
+    /// The mass at a time, s, over the mass at the instant.
+    #[inline(always)]
+    fn mass_left<S: Over<P>>(&self, time: S) -> S {
+        S::one() - (time + -self.since) * self.flow
     }
 }
 
@@ -206,6 +216,7 @@ impl<P: Scalar> Forces<P> {
             models,
             parameters,
             area_over_mass,
+            mass: parameters.mass,
             sin_cos_bank,
             burn,
             regime,
@@ -216,6 +227,12 @@ impl<P: Scalar> Forces<P> {
         };
         forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
         forces
+    }
+
+    /// The same forces on a vehicle of a mass, kg, of which the parameters need not have the number: a ballistic one has ratios.
+    #[must_use]
+    pub fn of_mass(self, mass: P) -> Self {
+        Self { mass, ..self }
     }
 
     /// The same forces with a thrust, if there is one.

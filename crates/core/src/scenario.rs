@@ -11,12 +11,10 @@ use bounds::out_of_bounds;
 use std::borrow::Cow;
 use std::fmt;
 
-use num_dual::Dual2_64;
-
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
-use crate::coordinates::PlanetFixed;
-use crate::event::{Condition, Direction, Engine, Event, Quantity};
+use crate::coordinates::{GreatCircle, PlanetFixed};
+use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
 use crate::planet::Planet;
@@ -49,8 +47,8 @@ pub struct Stop {
     pub time: f64,
     /// The altitude, m, along the radius vector, whose upward crossing ends the flight.
     pub ceiling: Option<f64>,
-    /// Conditions, each of which ends the flight.
-    pub when: Vec<Condition>,
+    /// What ends the flight beside these, each by itself.
+    pub when: Vec<Trigger>,
 }
 
 impl Default for Stop {
@@ -125,14 +123,7 @@ pub struct Case {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     case: Case,
-    on_stop_altitude: Option<Departure>,
-}
-
-/// Where a state on the stop altitude goes next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Departure {
-    Rising,
-    Sinking,
+    starts_on_stop_altitude: bool,
 }
 
 /// Something in a case that cannot be flown.
@@ -207,6 +198,32 @@ pub enum Fault {
         /// The stop altitude, m.
         altitude: f64,
     },
+    /// A condition on the heating where none is asked for.
+    #[error("needs heating, which the case does not ask for")]
+    NoHeating {
+        /// The place of the condition in the [`Case`].
+        field: String,
+    },
+    /// A condition on the downrange of a flight that starts vertically or at rest.
+    #[error(
+        "needs an initial heading, which a flight that starts vertically or at rest does not have; use ground_range"
+    )]
+    NoHeading {
+        /// The place of the condition in the [`Case`].
+        field: String,
+    },
+    /// Something waits for an event that is not there.
+    #[error("must be the name of an event of the case")]
+    NoSuchEvent {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// Something waits for an event that never happens.
+    #[error("must not be an event that waits, by way of others or at once, for itself: it would never happen")]
+    NeverHappens {
+        /// Its place in the [`Case`].
+        field: String,
+    },
     /// Heating without a nose.
     #[error("is required: the heat flux at the stagnation point depends on it")]
     NoNoseRadius,
@@ -252,8 +269,8 @@ impl Scenario {
         if !faults.is_empty() {
             return Err(ScenarioError(faults));
         }
-        let on_stop_altitude = (altitude <= case.stop.altitude + ON_STOP_ALTITUDE).then(|| case.departure());
-        Ok(Self { case, on_stop_altitude })
+        let starts_on_stop_altitude = altitude <= case.stop.altitude + ON_STOP_ALTITUDE;
+        Ok(Self { case, starts_on_stop_altitude })
     }
 
     /// The case.
@@ -268,14 +285,9 @@ impl Scenario {
         Self { case: Case { solver, ..self.case.clone() }, ..*self }
     }
 
-    /// Whether the flight starts on the stop altitude and leaves it upward.
-    pub fn rises_from_stop_altitude(&self) -> bool {
-        self.on_stop_altitude == Some(Departure::Rising)
-    }
-
-    /// Whether the flight ends where it starts: on the stop altitude, and not rising.
-    pub fn ends_at_start(&self) -> bool {
-        self.on_stop_altitude == Some(Departure::Sinking)
+    /// Whether the flight starts on the stop altitude, where it ends unless it leaves it upward.
+    pub fn starts_on_stop_altitude(&self) -> bool {
+        self.starts_on_stop_altitude
     }
 }
 
@@ -314,10 +326,15 @@ impl Case {
         !self.events.is_empty() || !self.stop.when.is_empty() || self.stop.ceiling.is_some()
     }
 
-    /// The conditions that end the flight or let something happen, with their places in the case.
-    fn conditions(&self) -> impl Iterator<Item = (String, &Condition)> {
+    /// What ends the flight or lets something happen, with its place in the case.
+    fn triggers(&self) -> impl Iterator<Item = (String, &Trigger)> {
         let events = self.events.iter().enumerate().map(|(index, event)| (format!("events.{index}.when"), &event.when));
         events.chain(self.stop.when.iter().enumerate().map(|(index, when)| (format!("stop.when.{index}"), when)))
+    }
+
+    /// Those of them that are conditions.
+    fn conditions(&self) -> impl Iterator<Item = (String, &Condition)> {
+        self.triggers().filter_map(|(place, trigger)| Some((place, trigger.condition()?)))
     }
 
     /// The models, with a vehicle in place of that of the start.
@@ -403,18 +420,39 @@ impl Case {
         let falling = falling.map(|(place, _)| Fault::TimeFalls { field: format!("{place}.falls_through") });
         let altitude = self.stop.altitude;
         let low = self.stop.ceiling.filter(|ceiling| *ceiling <= altitude);
-        falling.chain(low.map(|ceiling| Fault::LowCeiling { ceiling, altitude })).collect()
+        let missing = self.conditions().filter_map(|(place, condition)| {
+            let field = format!("{place}.quantity");
+            match condition.quantity {
+                quantity if quantity.is_of_heating() && self.heating.is_none() => Some(Fault::NoHeating { field }),
+                Quantity::Downrange if !GreatCircle::of(&self.initial_state).has_heading() => {
+                    Some(Fault::NoHeading { field })
+                }
+                _ => None,
+            }
+        });
+        let orphans = self.triggers().filter_map(|(place, trigger)| match *trigger {
+            Trigger::After { event, .. } if self.events.get(event).is_none() => {
+                Some(Fault::NoSuchEvent { field: format!("{place}.event") })
+            }
+            Trigger::After { event, .. } if self.waits_in_a_circle(event) => {
+                Some(Fault::NeverHappens { field: format!("{place}.event") })
+            }
+            _ => None,
+        });
+        let low = low.map(|ceiling| Fault::LowCeiling { ceiling, altitude });
+        falling.chain(low).chain(missing).chain(orphans).collect()
     }
 
-    /// Whether the altitude rises at first: its rate decides and, where the flight is level to rounding, its second derivative.
-    fn departure(&self) -> Departure {
-        let PlanetFixed { position, velocity } = &self.initial_state;
-        let acceleration = self.forces().acceleration(0.0, &self.initial_state);
-        let moving = nalgebra::Vector3::from_fn(|i, _| Dual2_64::new(position[i], velocity[i], acceleration[i]));
-        let altitude = self.planet.shape.altitude(&moving);
-        let level = 16.0 * f64::EPSILON * velocity.norm();
-        let rate = if altitude.v1.abs() > level { altitude.v1 } else { altitude.v2 };
-        if velocity.norm() > 0.0 && rate > 0.0 { Departure::Rising } else { Departure::Sinking }
+    /// Whether an event waits for others that wait for each other, so that none of them ever happens.
+    fn waits_in_a_circle(&self, mut event: usize) -> bool {
+        // A chain that is longer than there are events comes back to where it was.
+        for _ in 0..=self.events.len() {
+            match self.events.get(event).map(|event| event.when) {
+                Some(Trigger::After { event: other, .. }) => event = other,
+                _ => return false,
+            }
+        }
+        true
     }
 }
 

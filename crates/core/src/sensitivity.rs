@@ -5,16 +5,18 @@
 //! the formulas of the models change: as long as the change comes later, the flight moves on by the rates from before it.
 
 use std::array::from_fn;
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::SVector;
 use num_dual::{Dual64, DualSVec64, jacobian};
 
 use crate::atmosphere::Atmosphere;
-use crate::coordinates::{FlightPath, PlanetFixed};
-use crate::event::{Condition, Effect, Engine, Quantity};
+use crate::coordinates::{FlightPath, GreatCircle, PlanetFixed};
+use crate::event::{Condition, Direction, Effect, Engine, Quantity, Trigger};
 use crate::integrate::{System, follow};
-use crate::motion::{self, Burn, Cartesian, Forces, Formulation, Parameters, Regime, Spherical, moving};
+use crate::motion::{self, Burn, Cartesian, Forces, Formulation, Moment, Parameters, Regime, Spherical, moving};
 use crate::propulsion::Impulse;
 use crate::scalar::Scalar;
 use crate::scenario::{Case, Equations, Phase};
@@ -167,13 +169,29 @@ fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool
     let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = *numbers;
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
     let start = FlightPath::from(start);
-    match flight.case.solver.equations {
-        Equations::Cartesian => arrival_of::<Cartesian, _>(flight, &parameters, Cartesian, &start, interrupt),
-        Equations::Spherical => arrival_of::<Spherical, _>(flight, &parameters, Spherical, &start, interrupt),
+    match (flight.case.solver.equations, waits_for_heat_load(&flight.case)) {
+        (Equations::Cartesian, false) => {
+            arrival_of::<Cartesian, _, 6>(flight, &parameters, Cartesian, &start, interrupt)
+        }
+        (Equations::Spherical, false) => {
+            arrival_of::<Spherical, _, 6>(flight, &parameters, Spherical, &start, interrupt)
+        }
+        (Equations::Cartesian, true) => {
+            arrival_of::<Cartesian, _, 7>(flight, &parameters, Cartesian, &start, interrupt)
+        }
+        (Equations::Spherical, true) => {
+            arrival_of::<Spherical, _, 7>(flight, &parameters, Spherical, &start, interrupt)
+        }
     }
 }
 
-fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
+/// Whether anything in the flight depends on the heat load, so that it has to be followed along.
+fn waits_for_heat_load(case: &Case) -> bool {
+    let triggers = case.events.iter().map(|event| &event.when).chain(&case.stop.when);
+    triggers.filter_map(Trigger::condition).any(|condition| condition.quantity == Quantity::HeatLoad)
+}
+
+fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     flight: &Trajectory,
     parameters: &Parameters<Dual>,
     formulation: impl Fn(Forces<Dual>) -> M,
@@ -181,7 +199,13 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
     interrupt: &AtomicBool,
 ) -> Result<Outputs, SimulationError> {
     let Flown { legs, happenings, end, arrival, .. } = &flight.flown;
-    let mut state = F::coordinates(&start.to_planet_fixed(), Dual::from(0.0));
+    let start = start.to_planet_fixed();
+    let track = GreatCircle::of(&start);
+    let mut state = F::coordinates(&start, Dual::from(0.0));
+    // How much later each event happens as the numbers vary.
+    let mut delays = vec![Dual::from(0.0); flight.case.events.len()];
+    let triggers = flight.case.events.iter().map(|event| &event.when).chain(&flight.case.stop.when);
+    let awaited: BTreeSet<usize> = triggers.filter_map(Trigger::awaited).collect();
     let mut stage = Stage::first(flight, parameters);
     let mut forces = stage.forces(flight.flown.start.regime);
     let mut motion = formulation(forces.clone());
@@ -191,11 +215,12 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
         if interrupt.load(Ordering::Relaxed) {
             return Err(SimulationError::Interrupted { time });
         }
-        if (leg.phase, leg.regime) != (stage.phase, forces.regime()) {
+        let is_awaited = |happening: &&Happening| happening.before.time <= time && awaited.contains(&happening.event);
+        if (leg.phase, leg.regime) != (stage.phase, forces.regime()) || happenings.peek().is_some_and(is_awaited) {
             let now: Vec<_> =
                 std::iter::from_fn(|| happenings.next_if(|happening| happening.before.time <= time)).collect();
-            let place = Place { time, rates: motion.derivative(time.into(), &state), state };
-            let delay = turning_delay::<F>(&stage, &forces, &now, leg.regime, &place);
+            let place = Place { time, rates: motion.derivative(time.into(), &state), state, track: &track };
+            let delay = turning_delay::<F, N>(&stage, &forces, &now, leg.regime, &place, &delays);
             // So long the rates before the turn hold, and not yet those after it.
             state = from_fn(|i| state[i] + place.rates[i] * delay);
             let before = now.first().map_or(leg.phase, |happening| happening.before.phase);
@@ -203,8 +228,9 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
                 stage = stage.burnt_out(before, delay);
             }
             for happening in now {
+                delays[happening.event] = delay;
                 stage = stage.after(happening, delay);
-                state = push::<F>(&flight.case.events[happening.event].then, &state);
+                state = push::<F, N>(&flight.case.events[happening.event].then, &state);
             }
             if stage.phase != leg.phase {
                 stage = stage.burnt_out(leg.phase, delay);
@@ -216,17 +242,22 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
         }
         state = follow(&motion, &state, time, length);
     }
-    let place = Place { time: end.time, rates: motion.derivative(end.time.into(), &state), state };
-    let condition = match arrival.termination {
+    let place = Place { time: end.time, rates: motion.derivative(end.time.into(), &state), state, track: &track };
+    let at_altitude = |value| Condition { quantity: Quantity::Altitude, value, direction: Direction::Falling };
+    let trigger = match arrival.termination {
         Termination::TimeLimit => None,
-        Termination::SurfaceImpact | Termination::StopAltitude => Some(Quantity::Altitude),
-        Termination::AtmosphereExit => flight.case.stop.ceiling().map(|condition| condition.quantity),
-        Termination::Condition(index) => flight.case.stop.when.get(index).map(|condition| condition.quantity),
+        Termination::SurfaceImpact | Termination::StopAltitude => Some(at_altitude(flight.case.stop.altitude).into()),
+        Termination::AtmosphereExit => flight.case.stop.ceiling().map(Trigger::from),
+        Termination::Condition(index) => flight.case.stop.when.get(index).copied(),
     };
-    let delay = condition.map_or(Dual::from(0.0), |quantity| condition_delay::<F>(&stage, &forces, quantity, &place));
+    let delay = match trigger {
+        None => Dual::from(0.0),
+        Some(Trigger::Condition(condition)) => condition_delay::<F, N>(&stage, &forces, condition.quantity, &place),
+        Some(Trigger::After { event, .. }) => delays[event],
+    };
     state = from_fn(|i| state[i] + place.rates[i] * delay);
     for happening in happenings {
-        state = push::<F>(&flight.case.events[happening.event].then, &state);
+        state = push::<F, N>(&flight.case.events[happening.event].then, &state);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&state));
@@ -234,35 +265,53 @@ fn arrival_of<F: Formulation<6>, M: System<Dual, 6>>(
 }
 
 /// A state with its rates at a time, s, where something turns.
-struct Place {
+struct Place<'a, const N: usize> {
     time: f64,
-    state: [Dual; 6],
-    rates: [Dual; 6],
+    state: [Dual; N],
+    rates: [Dual; N],
+    /// From which ranges are measured.
+    track: &'a GreatCircle<Dual>,
 }
 
-impl Place {
+impl<const N: usize> Place<'_, N> {
     /// The values of the state, moving along the flow.
-    fn moving<F: Formulation<6>>(&self) -> PlanetFixed<Dual64> {
-        F::planet_fixed(&moving(&self.state.map(Scalar::value), &self.rates.map(Scalar::value)))
+    fn moving<F: Formulation<N>>(&self) -> Moment {
+        let values = moving(&self.state.map(Scalar::value), &self.rates.map(Scalar::value));
+        Moment::at::<F, N>(Dual64::new(self.time, 1.0), &values)
+    }
+
+    /// A quantity, as the numbers vary.
+    fn quantity<F: Formulation<N>>(&self, quantity: Quantity, forces: &Forces<Dual>) -> Dual {
+        forces.quantity(quantity, &Moment::at::<F, N>(Dual::from(self.time), &self.state), self.track)
     }
 }
 
 /// How much later a turn comes as the numbers vary; not at all where it comes by the time.
-fn turning_delay<F: Formulation<6>>(
+fn turning_delay<F: Formulation<N>, const N: usize>(
     stage: &Stage,
     forces: &Forces<Dual>,
     now: &[&Happening],
     next: Regime,
-    place: &Place,
+    place: &Place<N>,
+    delays: &[Dual],
 ) -> Dual {
-    let mut conditions = now.iter().map(|happening| stage.flight.case.events[happening.event].when);
     // A condition that was met by a jump was so because of another.
     let meets = |Condition { quantity, value, .. }: &Condition| {
-        let off = forces.quantity(*quantity, place.time.into(), &F::planet_fixed(&place.state)) - *value;
-        off.value().abs() <= ON_VALUE * value.abs().max(1.0)
+        let mut off = place.quantity::<F>(*quantity, forces).value() - *value;
+        if *quantity == Quantity::Downrange {
+            let around = TAU * stage.flight.case.planet.equatorial_radius();
+            off -= around * (off / around).round();
+        }
+        off.abs() <= ON_VALUE * value.abs().max(1.0)
     };
-    if let Some(condition) = conditions.find(meets) {
-        return condition_delay::<F>(stage, forces, condition.quantity, place);
+    let delay_of = |happening: &&Happening| match stage.flight.case.events[happening.event].when {
+        Trigger::Condition(condition) => {
+            meets(&condition).then(|| condition_delay::<F, N>(stage, forces, condition.quantity, place))
+        }
+        Trigger::After { event, .. } => Some(delays[event]),
+    };
+    if let Some(delay) = now.iter().find_map(delay_of) {
+        return delay;
     }
     if let Some(burnout) = stage.burnout().filter(|burnout| burnout.value() <= place.time) {
         return burnout - burnout.value();
@@ -272,19 +321,25 @@ fn turning_delay<F: Formulation<6>>(
     let Some(switch) = plain.first_to_turn(next, place.time, &values) else {
         return Dual::from(0.0);
     };
-    let rate = plain.readings(Dual64::new(place.time, 1.0), &place.moving::<F>())[switch as usize].eps;
+    let rate = plain.readings(Dual64::new(place.time, 1.0), &place.moving::<F>().state)[switch as usize].eps;
     let readings = forces.readings(Dual::from(place.time), &F::planet_fixed(&place.state));
     delay(readings[switch as usize], rate)
 }
 
 /// How much later a quantity passes the value that it has; not at all where it is the time.
-fn condition_delay<F: Formulation<6>>(stage: &Stage, forces: &Forces<Dual>, quantity: Quantity, place: &Place) -> Dual {
+fn condition_delay<F: Formulation<N>, const N: usize>(
+    stage: &Stage,
+    forces: &Forces<Dual>,
+    quantity: Quantity,
+    place: &Place<N>,
+) -> Dual {
     if quantity == Quantity::Time {
         return Dual::from(0.0);
     }
     let plain = stage.plain_forces(forces.regime());
-    let rate = plain.quantity(quantity, Dual64::new(place.time, 1.0), &place.moving::<F>()).eps;
-    delay(forces.quantity(quantity, place.time.into(), &F::planet_fixed(&place.state)), rate)
+    let track = place.track.map(|number| Dual64::from(number.value()));
+    let rate = plain.quantity(quantity, &place.moving::<F>(), &track).eps;
+    delay(place.quantity::<F>(quantity, forces), rate)
 }
 
 /// How much later a quantity passes the value that it has: a step of Newton's method, -q/q̇, of value zero.
@@ -293,11 +348,12 @@ fn delay(quantity: Dual, rate: f64) -> Dual {
 }
 
 /// The state after the impulse of an effect, if it has one.
-fn push<F: Formulation<6>>(effect: &Effect, state: &[Dual; 6]) -> [Dual; 6] {
+fn push<F: Formulation<N>, const N: usize>(effect: &Effect, state: &[Dual; N]) -> [Dual; N] {
     let Some(Impulse { along, speed_change }) = effect.impulse else { return *state };
+    let heat_load = state.get(6).copied().unwrap_or(Dual::from(0.0));
     let state = F::planet_fixed(state);
     let velocity = state.velocity + motion::along(along, &state) * Dual::from(speed_change);
-    F::coordinates(&PlanetFixed { velocity, ..state }, Dual::from(0.0))
+    F::coordinates(&PlanetFixed { velocity, ..state }, heat_load)
 }
 
 /// A phase of a flight, in numbers that vary.
@@ -348,7 +404,7 @@ impl<'a> Stage<'a> {
             flow: over_mass * thrust.mass_flow(),
         });
         let models = self.flight.case.models_of(&self.as_flown().vehicle);
-        let mut forces = Forces::new(models, self.parameters).burning(burn);
+        let mut forces = Forces::new(models, self.parameters).of_mass(self.mass).burning(burn);
         forces.enter(regime);
         forces
     }

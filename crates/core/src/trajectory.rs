@@ -247,7 +247,7 @@ pub(crate) struct Happening {
 pub struct Trajectory {
     pub(crate) case: Case,
     pub(crate) flown: Flown,
-    great_circle: Option<GreatCircle>,
+    great_circle: GreatCircle,
 }
 
 /// What a flight leaves behind.
@@ -447,7 +447,7 @@ impl Trajectory {
         let inertial = Inertial::from_planet_fixed(state, planet, 0.0);
         let climb = inertial.position.dot(&inertial.velocity);
         let across = inertial.position.cross(&inertial.velocity).norm();
-        let range = self.great_circle.map(|circle| circle.along_and_across(&state.position));
+        let range = self.great_circle.along_and_across(&state.position);
         let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * planet.equatorial_radius()));
         let loads = forces.loads(time, state);
         let wall = forces.heating().zip(loads.heat_flux);

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use reentry::scenario::Bound;
 use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
 
@@ -9,6 +10,7 @@ use crate::error::Problem;
 use crate::wire::batch::MOST_CASES;
 use crate::wire::columns::COLUMNS;
 use crate::wire::epoch::RFC3339_PATTERN;
+use crate::wire::events::QUANTITIES;
 use crate::wire::reader::MOST_COLUMNS;
 use crate::wire::scenario::Output;
 
@@ -35,7 +37,7 @@ const ALTERNATIVES: [(&str, &[&str]); 6] = [
     ("InertialFlightPath", &["radius", "altitude"]),
     ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
     ("LayeredAtmosphere", &["layers", "preset"]),
-    ("Condition", &["falls_through", "rises_through"]),
+    ("Condition", &["quantity", "event"]),
 ];
 
 /// Every failure that every endpoint may answer with.
@@ -258,25 +260,33 @@ fn parallel_conditions(name: &str) -> Vec<Value> {
             vec![below(3, "j3"), below(4, "j4")]
         }
         "Condition" => {
-            let of = |quantity: &str, bounds: Value| {
+            let of = |(name, quantity, _): &(&str, reentry::event::Quantity, &str)| {
+                let bound = quantity.bound();
+                let bounds = bounds_of(if quantity.is_angle() { bound.scaled(1.0_f64.to_degrees()) } else { bound });
                 let both = json!({"properties": {"falls_through": bounds, "rises_through": bounds}});
-                json!({"if": is("quantity", quantity), "then": both})
+                json!({"if": is("quantity", name), "then": both})
             };
-            let not_negative = json!({"minimum": 0});
+            let way = json!({"oneOf": [{"required": ["falls_through"]}, {"required": ["rises_through"]}],
+                "properties": {"delay": false}});
+            let no_way = json!({"properties": {"falls_through": false, "rises_through": false}});
+            let by_quantity = json!({"if": {"required": ["quantity"]}, "then": way, "else": no_way});
             let time = json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}});
-            vec![
-                of("time", json!({"minimum": 0, "maximum": 1e9})),
-                time,
-                of("altitude", json!({"minimum": -1e12, "maximum": 1e12})),
-                of("speed", json!({"minimum": 0, "maximum": 1e6})),
-                of("mach", not_negative.clone()),
-                of("dynamic_pressure", not_negative.clone()),
-                of("load_factor", not_negative),
-                of("flight_path_angle", json!({"minimum": -90, "maximum": 90})),
-            ]
+            [by_quantity, time].into_iter().chain(QUANTITIES.iter().map(of)).collect()
         }
         _ => Vec::new(),
     }
+}
+
+/// The keywords of a bound, which leaves out what every finite number is within.
+fn bounds_of(bound: Bound) -> Value {
+    let mut keywords = Map::new();
+    if bound.minimum > f64::MIN {
+        keywords.insert(if bound.exclusive { "exclusiveMinimum" } else { "minimum" }.to_owned(), json!(bound.minimum));
+    }
+    if bound.maximum < f64::MAX {
+        keywords.insert("maximum".to_owned(), json!(bound.maximum));
+    }
+    Value::Object(keywords)
 }
 
 /// Bounds of elements and of words, which the types do not tell.

@@ -3,33 +3,55 @@
 use nalgebra::Vector3;
 
 use super::PlanetFixed;
+use crate::scalar::{Scalar, length, reciprocal_or_one};
 
 /// The great circle through the initial ground point along the initial heading; its angles are those at the planet's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GreatCircle {
+pub struct GreatCircle<S: nalgebra::Scalar = f64> {
     /// To the initial ground point.
-    start: Vector3<f64>,
-    /// The direction of the initial heading.
-    ahead: Vector3<f64>,
-    /// To the right of it.
-    right: Vector3<f64>,
+    start: Vector3<S>,
+    /// The direction of the initial heading; none if the flight starts vertically or at rest.
+    ahead: Option<Vector3<S>>,
 }
 
 /// With a smaller part of its speed along the ground than this, a flight starts vertically and has no heading.
 const VERTICAL: f64 = 1e-9;
 
-impl GreatCircle {
-    /// The great circle of a flight that starts in this state; none if it starts vertically or at rest.
-    pub fn of(state: &PlanetFixed<f64>) -> Option<Self> {
-        let start = state.position.normalize();
-        let level = state.velocity - start * start.dot(&state.velocity);
-        let ahead = level.try_normalize(VERTICAL * state.velocity.norm())?;
-        Some(Self { start, ahead, right: ahead.cross(&start) })
+impl<S: Scalar<Mask = bool>> GreatCircle<S> {
+    /// The great circle of a flight that starts in this state.
+    pub fn of(state: &PlanetFixed<S>) -> Self {
+        let PlanetFixed { position, velocity } = state;
+        let over_radius = reciprocal_or_one(length(position));
+        let start = position.map(|component| component * over_radius);
+        let climb = start.dot(velocity);
+        let level = velocity - start.map(|component| component * climb);
+        let along = (length(&level), length(velocity));
+        let has_heading = !(along.0 - along.1 * VERTICAL).less_than(f64::MIN_POSITIVE);
+        let over_speed = reciprocal_or_one(along.0);
+        Self { start, ahead: has_heading.then(|| level.map(|component| component * over_speed)) }
     }
 
-    /// How far along the circle the foot of a place is, in (-π, π], and how far the place lies to the right of it, rad.
-    pub fn along_and_across(&self, position: &Vector3<f64>) -> [f64; 2] {
-        let [start, ahead, right] = [&self.start, &self.ahead, &self.right].map(|axis| axis.dot(position));
-        [ahead.atan2(start), right.atan2(start.hypot(ahead))]
+    /// The same in other numbers.
+    pub fn map<T: nalgebra::Scalar>(&self, number: impl Fn(S) -> T + Copy) -> GreatCircle<T> {
+        GreatCircle { start: self.start.map(number), ahead: self.ahead.map(|ahead| ahead.map(number)) }
+    }
+
+    /// Whether the flight has a heading when it starts.
+    pub fn has_heading(&self) -> bool {
+        self.ahead.is_some()
+    }
+
+    /// How far along the circle the foot of a place is, in (-π, π], and how far the place lies to the right of it, rad; none without a
+    /// heading.
+    pub fn along_and_across(&self, position: &Vector3<S>) -> Option<[S; 2]> {
+        let ahead = self.ahead?;
+        let right = ahead.cross(&self.start);
+        let [start, ahead, right] = [&self.start, &ahead, &right].map(|axis| axis.dot(position));
+        Some([ahead.atan2(start), right.atan2((start * start + ahead * ahead).sqrt())])
+    }
+
+    /// The angle at the planet's centre between the initial ground point and a place, in [0, π], rad.
+    pub fn angle_to(&self, position: &Vector3<S>) -> S {
+        length(&self.start.cross(position)).atan2(self.start.dot(position))
     }
 }

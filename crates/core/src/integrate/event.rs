@@ -36,14 +36,26 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
     end.re <= 0.0 || dips()
 }
 
-/// The part of the step at which the quantity first comes from above zero to zero, as far as the ends of the step tell of it: it is
-/// above at the start and not at the end, or falls and rises again, or rises and falls again, with tangents that meet beyond zero.
-pub fn first_crossing(start: Dual64, end: Dual64, length: f64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
-    let beyond = || tangents_meet((0.0, start), (1.0, end), length);
-    let crosses = if start.re > 0.0 {
-        seems_to_fall(start, end, length)
-    } else {
-        start.eps > 0.0 && end.eps < 0.0 && end.re <= 0.0 && beyond() > 0.0
+/// The part of the step at which the quantity first comes from above zero to zero.
+///
+/// The inside of the step is looked at where the ends ask for it: the quantity is above zero at one end alone, or its rate changes sign
+/// between them, so that it turns inside. Where `closely`, as between the entries of tables, it may turn more than once: then also where
+/// four times the greater rate of the two ends would carry it to zero. An extremum that [`maximum`] finds is found here as well.
+pub fn first_crossing(
+    start: Dual64,
+    end: Dual64,
+    length: f64,
+    closely: bool,
+    inside: impl Fn(f64) -> Dual64,
+) -> Option<f64> {
+    let dips = start.eps < 0.0 && end.eps > 0.0;
+    let rises = start.eps > 0.0 && end.eps < 0.0;
+    let reach = 4.0 * length * start.eps.abs().max(end.eps.abs());
+    let crosses = match (start.re > 0.0, end.re > 0.0) {
+        (true, false) => true,
+        (true, true) => dips || closely && start.re.min(end.re) <= reach,
+        (false, false) => rises || closely && start.re.max(end.re) >= -reach,
+        (false, true) => false,
     };
     if !crosses {
         return None;
@@ -51,11 +63,15 @@ pub fn first_crossing(start: Dual64, end: Dual64, length: f64, inside: impl Fn(f
     let mut from = (0.0, start);
     for part in [0.25, 0.5, 0.75, 1.0] {
         let to = (part, if part < 1.0 { inside(part) } else { end });
-        let crossing = crossing_between(from, to, length, &inside);
+        let crossing = crossing_between(from, to, &inside);
         if crossing.is_some() {
             return crossing;
         }
         from = to;
+    }
+    if dips || rises {
+        // Between the quarters the rates may tell of no turn, or of another.
+        return crossing_between((0.0, start), (1.0, end), &inside);
     }
     None
 }
@@ -78,11 +94,14 @@ fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual
     if a.1.re <= 0.0 {
         return (a.1.eps < 0.0).then_some(a.0);
     }
-    crossing_between(a, b, length, inside)
+    if a.1.eps < 0.0 && b.1.eps > 0.0 && b.1.re > 0.0 && tangents_meet(a, b, length) >= 0.0 {
+        return None;
+    }
+    crossing_between(a, b, inside)
 }
 
 /// A fall from above zero.
-fn crossing_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
+fn crossing_between(a: Sample, b: Sample, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
     let turning = || {
         let part = turning_point(a, b, inside);
         (part, inside(part))
@@ -94,7 +113,7 @@ fn crossing_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> 
         return None;
     }
     if a.1.eps < 0.0 && b.1.eps > 0.0 && b.1.re > 0.0 {
-        return if tangents_meet(a, b, length) < 0.0 { crossing_after(a, turning(), inside) } else { None };
+        return crossing_after(a, turning(), inside);
     }
     crossing_after(a, b, inside)
 }

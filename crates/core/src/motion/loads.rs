@@ -34,14 +34,20 @@ pub struct Loads<S> {
 }
 
 impl<S: Scalar> Loads<S> {
-    /// What an event may wait for, as far as it is one of the loads.
-    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<S> {
+    /// What an event may wait for, as far as it is one of the loads on a vehicle with this nose.
+    pub(crate) fn quantity(&self, quantity: Quantity, nose: Option<&Stagnation>) -> Option<S> {
+        let heat_flux = || self.heat_flux.map(|flux| flux.total());
         match quantity {
             Quantity::Altitude => Some(self.altitude),
             Quantity::Mach => self.mach,
             Quantity::DynamicPressure => Some(self.dynamic_pressure),
             Quantity::LoadFactor => Some(self.load_factor),
-            Quantity::Time | Quantity::Speed | Quantity::FlightPathAngle => None,
+            Quantity::AirSpeed => Some(self.air_speed),
+            Quantity::Deceleration => Some(self.deceleration),
+            Quantity::Density => Some(self.density),
+            Quantity::HeatFlux => heat_flux(),
+            Quantity::WallTemperature => Some(nose?.wall_temperature(heat_flux()?)),
+            _ => None,
         }
     }
 }
@@ -100,20 +106,6 @@ impl<P: Scalar> Forces<P> {
         let lift_coefficient = lift_coefficient * (lift_fade_over_cosine(cos_gamma) * cos_gamma);
         let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
         dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY)
-    }
-
-    /// What an event may wait for, in a state.
-    pub fn quantity<S: Over<P> + Scalar<Mask = bool>>(&self, quantity: Quantity, time: S, state: &PlanetFixed<S>) -> S {
-        let PlanetFixed { position, velocity } = state;
-        match quantity {
-            Quantity::Time => time,
-            Quantity::Altitude => self.models.planet.shape.altitude(position),
-            Quantity::Speed => length(velocity),
-            Quantity::FlightPathAngle => position.dot(velocity).atan2(length(&position.cross(velocity))),
-            Quantity::Mach | Quantity::DynamicPressure | Quantity::LoadFactor => {
-                self.loads(time, state).quantity(quantity).unwrap_or_else(S::zero)
-            }
-        }
     }
 
     fn lift_and_drag_coefficient<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {

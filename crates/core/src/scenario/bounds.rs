@@ -7,7 +7,7 @@ use std::fmt;
 use super::{Case, Fault, Plain};
 use crate::atmosphere::Atmosphere;
 use crate::control::Command;
-use crate::event::{Condition, Effect, Engine, Quantity};
+use crate::event::{Condition, Effect, Engine, Quantity, Trigger};
 use crate::planet::{Gravity, Zonal};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
@@ -36,6 +36,8 @@ impl Bound {
     pub const VELOCITY: Self = Self::between(-1e6, 1e6);
     /// Coordinates and altitudes, m.
     pub const DISTANCE: Self = Self::between(-1e12, 1e12);
+    /// Lengths, m.
+    pub const NON_NEGATIVE_DISTANCE: Self = Self::between(0.0, 1e12);
     /// Radii of planets, m.
     pub const PLANET_RADIUS: Self = Self::between(1.0, 1e12);
     /// Distances from the planet's centre, m.
@@ -146,13 +148,16 @@ pub(super) fn out_of_bounds(case: &Case) -> Vec<Fault> {
     }));
     let fixed = checks.into_iter().map(|(field, value, bound)| (Cow::Borrowed(field), value, bound));
     let fixed = fixed.chain(coefficients("vehicle", &vehicle.aerodynamics));
-    let conditions = case.conditions().map(|(place, Condition { quantity, value, .. })| {
-        (Cow::Owned(format!("{place}.value")), *value, quantity.bound())
+    let triggers = case.triggers().map(|(place, trigger)| match *trigger {
+        Trigger::Condition(Condition { quantity, value, .. }) => {
+            (Cow::Owned(format!("{place}.value")), value, quantity.bound())
+        }
+        Trigger::After { delay, .. } => (Cow::Owned(format!("{place}.delay")), delay, Bound::TIME),
     });
     let effects = case.events.iter().enumerate().flat_map(|(index, event)| numbers(index, &event.then));
     let fault =
         |(field, value, bound): Check| (!bound.admits(value)).then_some(Fault::OutOfBounds { field, value, bound });
-    fixed.chain(conditions).chain(effects).filter_map(fault).collect()
+    fixed.chain(triggers).chain(effects).filter_map(fault).collect()
 }
 
 /// A number, with its place in the case and its bound.
@@ -196,10 +201,20 @@ impl Quantity {
     pub fn bound(self) -> Bound {
         match self {
             Self::Time => Bound::TIME,
-            Self::Altitude => Bound::DISTANCE,
-            Self::Speed => Bound::SPEED,
-            Self::Mach | Self::DynamicPressure | Self::LoadFactor => Bound::NON_NEGATIVE,
+            Self::Altitude | Self::ApoapsisAltitude | Self::PeriapsisAltitude | Self::Downrange => Bound::DISTANCE,
+            Self::Speed | Self::AirSpeed | Self::InertialSpeed => Bound::SPEED,
+            Self::Mach
+            | Self::DynamicPressure
+            | Self::LoadFactor
+            | Self::Mass
+            | Self::HeatFlux
+            | Self::HeatLoad
+            | Self::WallTemperature
+            | Self::Density => Bound::NON_NEGATIVE,
             Self::FlightPathAngle => Bound::QUARTER_TURN,
+            Self::Inclination => Bound::HALF_TURN,
+            Self::GroundRange => Bound::NON_NEGATIVE_DISTANCE,
+            Self::SpecificEnergy | Self::Deceleration => Bound::FINITE,
         }
     }
 }

@@ -80,6 +80,8 @@ impl Phase {
             acceleration: thrust.force / self.vehicle.mass,
             flow: thrust.mass_flow() / self.vehicle.mass,
         });
-        Forces::new(case.models_of(&self.vehicle), case.parameters_of(&self.vehicle)).burning(burn)
+        Forces::new(case.models_of(&self.vehicle), case.parameters_of(&self.vehicle))
+            .of_mass(self.vehicle.mass)
+            .burning(burn)
     }
 }

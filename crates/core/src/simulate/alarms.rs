@@ -1,11 +1,14 @@
 //! Conditions that a flight watches on its way: of its events, and of its end.
 
+use std::f64::consts::TAU;
+
 use num_dual::Dual64;
 
-use super::passage::{Moment, Passage};
-use crate::event::{Condition, Quantity};
+use super::passage::Passage;
+use crate::coordinates::GreatCircle;
+use crate::event::{Condition, Direction, Quantity, Trigger};
 use crate::integrate::event;
-use crate::motion::{Forces, Formulation};
+use crate::motion::{Forces, Formulation, Moment};
 use crate::scenario::Case;
 use crate::trajectory::Termination;
 
@@ -15,12 +18,25 @@ pub(super) struct Alarms {
     /// The quantities for which a condition waits.
     watched: Vec<Quantity>,
     /// Of these, with their rates, at the end of the last step; the others are zero.
-    last: [Dual64; Quantity::ALL.len()],
+    last: Readings,
+    /// From which ranges are measured.
+    track: GreatCircle<Dual64>,
+    /// The circumference of the sphere on which they are, m.
+    around: f64,
 }
+
+/// Every quantity, with its rate.
+type Readings = [Dual64; Quantity::ALL.len()];
 
 /// A condition, and what it sets off.
 struct Alarm {
+    /// That of an event which waits for another is on the time, which is set when the other happens.
     condition: Condition,
+    /// So far beyond the value the condition is met, in its unit: 0, but for a quantity that began on the value and has not moved on to
+    /// the far side.
+    margin: f64,
+    /// The event for which it waits, and the delay after it, s.
+    waits_for: Option<(usize, f64)>,
     sets_off: SetsOff,
     state: State,
 }
@@ -36,6 +52,8 @@ enum SetsOff {
 
 #[derive(Clone, Copy, PartialEq)]
 enum State {
+    /// It waits for another event.
+    Dormant,
     /// It waits.
     Armed,
     /// It is met at the present instant.
@@ -44,30 +62,82 @@ enum State {
     Done,
 }
 
+impl Alarm {
+    fn new(trigger: Trigger, sets_off: SetsOff) -> Self {
+        let at = |value| Condition { quantity: Quantity::Time, value, direction: Direction::Rising };
+        let (condition, waits_for, state) = match trigger {
+            Trigger::Condition(condition) => (condition, None, State::Armed),
+            Trigger::After { event, delay } => (at(f64::INFINITY), Some((event, delay)), State::Dormant),
+        };
+        Self { condition, margin: 0.0, waits_for, sets_off, state }
+    }
+
+    /// How far the quantity is before the value.
+    fn before(&self, quantity: Dual64) -> Dual64 {
+        self.condition.before(quantity) + self.margin
+    }
+
+    /// The same of all quantities.
+    fn before_among(&self, quantities: &Readings) -> Dual64 {
+        self.before(quantities[self.condition.quantity as usize])
+    }
+}
+
 impl Alarms {
     /// Those of a case, all waiting, for a flight that starts at a moment.
     pub(super) fn new(case: &Case, forces: &Forces, start: &Moment) -> Self {
         let events = case.events.iter().enumerate().map(|(index, event)| (event.when, SetsOff::Event(index)));
         let stops = case.stop.when.iter().enumerate();
-        let stops = stops.map(|(index, condition)| (*condition, SetsOff::End(Termination::Condition(index))));
-        let ceiling = case.stop.ceiling().map(|condition| (condition, SetsOff::End(Termination::AtmosphereExit)));
-        let all = events.chain(stops).chain(ceiling);
-        let armed = |(condition, sets_off)| Alarm { condition, sets_off, state: State::Armed };
-        let all: Vec<_> = all.map(armed).collect();
+        let stops = stops.map(|(index, when)| (*when, SetsOff::End(Termination::Condition(index))));
+        let ceiling =
+            case.stop.ceiling().map(|condition| (condition.into(), SetsOff::End(Termination::AtmosphereExit)));
+        let all: Vec<_> =
+            events.chain(stops).chain(ceiling).map(|(trigger, sets_off)| Alarm::new(trigger, sets_off)).collect();
         let waits = |quantity: &Quantity| all.iter().any(|alarm| alarm.condition.quantity == *quantity);
         let watched = Quantity::ALL.into_iter().filter(waits).collect();
-        let mut alarms = Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()] };
-        alarms.last = alarms.read(|quantity| forces.quantity(quantity, start.time, &start.state));
+        let track = GreatCircle::of(&case.initial_state).map(Dual64::from);
+        let around = TAU * case.planet.equatorial_radius();
+        let mut alarms = Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()], track, around };
+        alarms.last = alarms.read(forces, start);
         alarms
     }
 
+    /// A quantity at a moment near the last: the downrange goes on beyond half the globe.
+    fn quantity(&self, quantity: Quantity, forces: &Forces, moment: &Moment) -> Dual64 {
+        self.continued(quantity, forces.quantity(quantity, moment, &self.track))
+    }
+
+    /// The reading of a quantity next to its last one.
+    fn continued(&self, quantity: Quantity, reading: Dual64) -> Dual64 {
+        match quantity {
+            Quantity::Downrange => {
+                let turns = ((self.last[quantity as usize].re - reading.re) / self.around).round();
+                reading + turns * self.around
+            }
+            _ => reading,
+        }
+    }
+
     /// Every quantity for which a condition waits.
-    fn read(&self, quantity: impl Fn(Quantity) -> Dual64) -> [Dual64; Quantity::ALL.len()] {
+    fn read(&self, forces: &Forces, moment: &Moment) -> Readings {
+        self.gather(|quantity| self.quantity(quantity, forces, moment))
+    }
+
+    /// The same at the end of a step.
+    fn read_end<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Readings {
+        self.gather(|quantity| self.at_end(quantity, passage))
+    }
+
+    fn gather(&self, reading: impl Fn(Quantity) -> Dual64) -> Readings {
         let mut quantities = self.last;
         for watched in &self.watched {
-            quantities[*watched as usize] = quantity(*watched);
+            quantities[*watched as usize] = reading(*watched);
         }
         quantities
+    }
+
+    fn at_end<F: Formulation<N>, const N: usize>(&self, quantity: Quantity, passage: &Passage<F, N>) -> Dual64 {
+        self.continued(quantity, passage.quantity_at_end(quantity, &self.track))
     }
 
     /// When the next condition on the time is met, s.
@@ -80,21 +150,22 @@ impl Alarms {
     pub(super) fn first<F: Formulation<N>, const N: usize>(&self, passage: &Passage<F, N>) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         let length = passage.step.length();
+        let forces = passage.motion.forces();
         let nearest = self.nearest();
-        for (index, Alarm { condition, .. }) in self.armed() {
-            let quantity = condition.quantity;
+        for (index, alarm) in self.armed() {
+            let quantity = alarm.condition.quantity;
             if quantity == Quantity::Time {
                 continue;
             }
-            let [start, end] = [self.last[quantity as usize], passage.quantity_at_end(quantity)]
-                .map(|quantity| condition.before(quantity));
+            let start = alarm.before_among(&self.last);
+            let end = alarm.before(self.at_end(quantity, passage));
             // A quantity comes to the nearest value before it comes to those beyond.
-            let is_behind = nearest[quantity as usize][condition.direction as usize] != index;
+            let is_behind = nearest[quantity as usize][alarm.condition.direction as usize] != index;
             if start.re > 0.0 && is_behind {
                 continue;
             }
-            let inside = |part| before(condition, passage.motion.forces(), &passage.inside(part));
-            if let Some(part) = event::first_crossing(start, end, length, inside)
+            let inside = |part| self.before(index, forces, &passage.inside(part));
+            if let Some(part) = event::first_crossing(start, end, length, forces.has_tables(), inside)
                 && first.is_none_or(|(least, _)| part < least)
             {
                 first = Some((part, index));
@@ -106,10 +177,9 @@ impl Alarms {
     /// Of every quantity and direction, the condition to which it has the shortest way; the first of several.
     fn nearest(&self) -> [[usize; 2]; Quantity::ALL.len()] {
         let mut nearest = [[(f64::INFINITY, usize::MAX); 2]; Quantity::ALL.len()];
-        for (index, Alarm { condition, .. }) in self.armed() {
-            let quantity = condition.quantity as usize;
-            let way = condition.before(self.last[quantity]).re;
-            let least = &mut nearest[quantity][condition.direction as usize];
+        for (index, alarm) in self.armed() {
+            let way = alarm.before_among(&self.last).re;
+            let least = &mut nearest[alarm.condition.quantity as usize][alarm.condition.direction as usize];
             if way > 0.0 && way < least.0 {
                 *least = (way, index);
             }
@@ -119,7 +189,8 @@ impl Alarms {
 
     /// How far a quantity is before the value of a condition.
     pub(super) fn before(&self, index: usize, forces: &Forces, moment: &Moment) -> Dual64 {
-        before(&self.all[index].condition, forces, moment)
+        let alarm = &self.all[index];
+        alarm.before(self.quantity(alarm.condition.quantity, forces, moment))
     }
 
     /// Goes to the end of a step.
@@ -127,13 +198,17 @@ impl Alarms {
         if self.is_empty() {
             return;
         }
-        let next = self.read(|quantity| passage.quantity_at_end(quantity));
+        let next = self.read_end(passage);
         let last = std::mem::replace(&mut self.last, next);
         for alarm in self.all.iter_mut().filter(|alarm| alarm.state == State::Armed) {
-            let [last, next] = [last, next].map(|of| alarm.condition.before(of[alarm.condition.quantity as usize]).re);
+            let [last, next] = [last, next].map(|quantities| alarm.before_among(&quantities).re);
             // Where conditions are met together, one of them cuts the step.
             if last > 0.0 && next <= 0.0 {
                 alarm.state = State::Due;
+            }
+            // Once well on the near side, it is met on the value itself.
+            if next > 2.0 * alarm.margin {
+                alarm.margin = 0.0;
             }
         }
     }
@@ -143,23 +218,58 @@ impl Alarms {
         self.all[index].state = State::Due;
     }
 
-    /// Finds all that are met at the present instant: on their value and moving on, or beyond it by a jump.
+    /// Finds all that are met at the present instant by the time, or by a jump from the near side or from the value.
     pub(super) fn look(&mut self, forces: &Forces, now: &Moment) {
-        let next = self.read(|quantity| forces.quantity(quantity, now.time, &now.state));
+        let next = self.read(forces, now);
         let last = std::mem::replace(&mut self.last, next);
         for alarm in self.all.iter_mut().filter(|alarm| alarm.state == State::Armed) {
-            let of = |quantities: [Dual64; _]| alarm.condition.before(quantities[alarm.condition.quantity as usize]);
-            let [last, next] = [of(last), of(next)];
-            let passes = next.re.abs() <= alarm.condition.resolution() && next.eps < 0.0;
-            let jumped = last.re > 0.0 && next.re <= 0.0;
-            if passes || jumped {
+            let resolution = alarm.condition.resolution();
+            let [last, next] = [last, next].map(|quantities| alarm.before_among(&quantities).re);
+            let jumped = last > resolution && next <= resolution || last >= -resolution && next < -resolution;
+            let is_time = alarm.condition.quantity == Quantity::Time && next <= resolution;
+            if jumped || is_time {
                 alarm.state = State::Due;
             }
         }
     }
 
-    /// The first of the events that are due, which it then is no more.
-    pub(super) fn next_event(&mut self) -> Option<usize> {
+    /// Finds all whose quantity is on the value at the present instant and moves on to the far side; returns whether there are any.
+    ///
+    /// However slowly it starts: the motion a moment later decides, not the rate at the instant, which may be zero or a rounding.
+    /// `later` gives the moment after some time, s, and moments up to `horizon` are looked at, s.
+    pub(super) fn look_closely(&mut self, forces: &Forces, later: impl Fn(f64) -> Moment, horizon: f64) -> bool {
+        let is_on_value = |alarm: &Alarm| {
+            let off = alarm.before_among(&self.last).re - alarm.margin;
+            alarm.condition.quantity != Quantity::Time && off.abs() <= alarm.condition.resolution()
+        };
+        let mut undecided: Vec<_> =
+            self.armed().filter(|(_, alarm)| is_on_value(alarm)).map(|(index, _)| index).collect();
+        let mut found = false;
+        for (length, is_last) in moments_up_to(horizon) {
+            if undecided.is_empty() {
+                break;
+            }
+            let next = self.read(forces, &later(length));
+            let Self { all, last, .. } = self;
+            undecided.retain(|index| {
+                let alarm = &mut all[*index];
+                let change = (alarm.before_among(&next) - alarm.before_among(last)).re;
+                // To the last, what is far more than a rounding decides.
+                let resolution = alarm.condition.resolution() * if is_last { 1e-3 } else { 1.0 };
+                if change < -resolution {
+                    alarm.state = State::Due;
+                    found = true;
+                } else {
+                    alarm.margin = 2.0 * alarm.condition.resolution();
+                }
+                change.abs() <= resolution
+            });
+        }
+        found
+    }
+
+    /// The first of the events that are due, which it then is no more: it happens at a time, s, from which others count.
+    pub(super) fn next_event(&mut self, time: f64) -> Option<usize> {
         let event = |alarm: &mut Alarm| match (alarm.state, alarm.sets_off) {
             (State::Due, SetsOff::Event(event)) => {
                 alarm.state = State::Done;
@@ -167,7 +277,14 @@ impl Alarms {
             }
             _ => None,
         };
-        self.all.iter_mut().find_map(event)
+        let event = self.all.iter_mut().find_map(event)?;
+        for alarm in &mut self.all {
+            if let Some((_, delay)) = alarm.waits_for.filter(|(other, _)| *other == event) {
+                alarm.condition.value = time + delay;
+                alarm.state = State::Armed;
+            }
+        }
+        Some(event)
     }
 
     /// How the flight ends, if a condition for that is due.
@@ -193,7 +310,8 @@ impl Alarms {
     }
 }
 
-/// How far a quantity is before the value of a condition.
-fn before(condition: &Condition, forces: &Forces, moment: &Moment) -> Dual64 {
-    condition.before(forces.quantity(condition.quantity, moment.time, &moment.state))
+/// Times at which to look where a quantity goes, each four times the one before, up to a horizon, s; with whether it is the last.
+pub(super) fn moments_up_to(horizon: f64) -> impl Iterator<Item = (f64, bool)> {
+    const LOOKS: i32 = 10;
+    (0..LOOKS).map(move |look| (horizon * 0.25_f64.powi(LOOKS - 1 - look), look == LOOKS - 1))
 }

@@ -2,9 +2,9 @@
 
 use num_dual::Dual64;
 
-use super::passage::{Moment, Passage};
+use super::passage::Passage;
 use crate::integrate::{Integrator, Step, event};
-use crate::motion::Formulation;
+use crate::motion::{Formulation, Moment};
 use crate::planet::Shape;
 
 /// The height above the stop altitude, with its rate, at the end of the last step.

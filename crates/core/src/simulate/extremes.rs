@@ -3,11 +3,11 @@
 use num_dual::Dual64;
 
 use super::SimulationError;
-use super::passage::{Moment, Passage};
+use super::passage::Passage;
 use crate::coordinates::PlanetFixed;
 use crate::heating::HeatFlux;
 use crate::integrate::{Integrator, event};
-use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Regime};
+use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Moment, Regime};
 use crate::trajectory::{HeatingPeaks, Instant, Peak, Peaks, Warning};
 
 /// What was seen so far, and the loads with their rates at the end of the last step.
@@ -111,7 +111,8 @@ impl Extremes {
         if *phase != self.stage.0 {
             let state =
                 PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
-            self.jump(forces, &Moment { time: Dual64::from(*time), state })?;
+            let heat_load = Dual64::from(heat_load.unwrap_or(0.0));
+            self.jump(forces, &Moment { time: Dual64::from(*time), state, heat_load })?;
         }
         if let (Some(heating), Some(heat_load), Some(nose)) = (&mut self.peaks.heating, heat_load, forces.heating()) {
             heating.heat_load = Peak { value: *heat_load, time: *time, altitude: self.loads.altitude.re };

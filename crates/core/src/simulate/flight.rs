@@ -1,15 +1,16 @@
 //! A flight on its way: what its steps mean.
 
+use std::array::from_fn;
 use std::sync::atomic::AtomicBool;
 
 use super::SimulationError;
-use super::alarms::Alarms;
+use super::alarms::{Alarms, moments_up_to};
 use super::descent::{Descent, land};
-use super::passage::{Moment, Passage};
+use super::passage::Passage;
 use super::watch::{Exit, Watch, next_corner};
 use crate::coordinates::PlanetFixed;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
-use crate::motion::{self, Chatter, Formulation, heat_load};
+use crate::motion::{self, Chatter, Formulation, Moment, heat_load};
 use crate::propulsion::Impulse;
 use crate::scenario::{Phase, Scenario};
 use crate::trajectory::{Arrival, Happening, Instant, Termination, Warning};
@@ -62,10 +63,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         settle(&mut motion, 0.0, &state)?;
         let integrator = Integrator::new(&motion, state, limits);
         let start = Moment::of::<F, N>(0.0, &state, integrator.derivative());
-        let mut descent = Descent::new(case.planet.shape, case.stop.altitude, &start);
-        if scenario.rises_from_stop_altitude() {
-            descent.start_upward();
-        }
+        let descent = Descent::new(case.planet.shape, case.stop.altitude, &start);
         let watch = Watch::new(motion.forces(), &start);
         let alarms = Alarms::new(case, motion.forces(), &start);
         let phase = Phase::first(case);
@@ -75,8 +73,23 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
-        let ending = self.scenario.ends_at_start().then(|| self.ground());
-        if self.alarms.is_empty() { Ok(ending.map(|ending| self.arrival(ending))) } else { self.turn(None, ending) }
+        let is_on_ground = self.scenario.starts_on_stop_altitude();
+        if !self.alarms.is_empty() {
+            return self.turn(None, None, is_on_ground);
+        }
+        Ok((is_on_ground && !self.lifts_off()).then(|| self.arrival(self.ground())))
+    }
+
+    /// Whether a flight that starts on the stop altitude, and on which all has happened that happens at t = 0, leaves it upward.
+    fn lifts_off(&mut self) -> bool {
+        let altitude = |length| self.descent.height(&later(&self.motion, self.time, &self.state, length)).re;
+        let start = altitude(0.0);
+        let mut changes = moments_up_to(self.foresight()).map(|(length, _)| altitude(length) - start);
+        let lifts_off = changes.find(|change| change.abs() > MOVES).is_some_and(|change| change > 0.0);
+        if lifts_off {
+            self.descent.start_upward();
+        }
+        lifts_off
     }
 
     /// How a flight ends on the stop altitude.
@@ -152,12 +165,17 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             Some(Cut::Alarm(index)) => self.alarms.meet(index),
             None => {}
         }
-        if turns { self.turn(exit, ending) } else { Ok(None) }
+        if turns { self.turn(exit, ending, false) } else { Ok(None) }
     }
 
     /// Does what happens at the end of a step, and goes on from there in the regime and the phase that begin; returns the end of the
-    /// flight, if that was it.
-    fn turn(&mut self, exit: Option<Exit>, ending: Option<Termination>) -> Result<Option<Arrival>, SimulationError> {
+    /// flight, if that was it. `is_on_ground` says that it starts on the stop altitude, which it may leave upward.
+    fn turn(
+        &mut self,
+        exit: Option<Exit>,
+        mut ending: Option<Termination>,
+        is_on_ground: bool,
+    ) -> Result<Option<Arrival>, SimulationError> {
         let settled = settle(&mut self.motion, self.time, &self.state);
         // The last instant belongs to what would follow; where nothing could, it belongs to what was.
         if ending.is_none() {
@@ -167,11 +185,21 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let mut eventless = true;
         if !self.alarms.is_empty() {
             self.look();
-            while let Some(event) = self.alarms.next_event() {
-                self.happen(event)?;
-                self.burn_out()?;
-                self.look();
-                eventless = false;
+            loop {
+                while let Some(event) = self.alarms.next_event(self.time) {
+                    self.happen(event)?;
+                    self.burn_out()?;
+                    self.look();
+                    eventless = false;
+                }
+                if is_on_ground && !self.lifts_off() {
+                    ending = Some(self.ground());
+                    break;
+                }
+                // What else moves on from its value is known when all that changes the motion has happened.
+                if !self.look_closely() {
+                    break;
+                }
             }
         }
         if let Some(ending) = ending.or_else(|| self.alarms.end()) {
@@ -202,6 +230,21 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         self.looks += 1;
         let now = Moment::of::<F, N>(self.time, &self.state, &derivative);
         self.alarms.look(self.motion.forces(), &now);
+    }
+
+    /// Finds the conditions that are met at the present instant by a quantity that is on the value and moves on.
+    fn look_closely(&mut self) -> bool {
+        let foresight = self.foresight();
+        let Self { alarms, motion, time, state, .. } = self;
+        alarms.look_closely(motion.forces(), |length| later(motion, *time, state, length), foresight)
+    }
+
+    /// How far ahead the motion is followed where the rates of an instant do not tell where a quantity goes, s.
+    fn foresight(&self) -> f64 {
+        let planet = &self.scenario.case().planet;
+        let radius = F::planet_fixed(&self.state).position.norm();
+        let dynamical = (radius.powi(3) / planet.gravitational_parameter).sqrt();
+        (FORESIGHT * dynamical).min(self.motion.longest_step(self.time, &self.state))
     }
 
     /// Lets an event happen.
@@ -277,6 +320,19 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 }
 
+/// The moment some time after another, s, by one step of the classical method of Runge and Kutta: good for short times.
+fn later<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64; N], length: f64) -> Moment {
+    let ahead = |rates: &[f64; N], part: f64| -> [f64; N] { from_fn(|i| state[i] + rates[i] * (part * length)) };
+    let rates = |part: f64, state: &[f64; N]| motion.derivative(time + part * length, state);
+    let first = rates(0.0, state);
+    let second = rates(0.5, &ahead(&first, 0.5));
+    let third = rates(0.5, &ahead(&second, 0.5));
+    let fourth = rates(1.0, &ahead(&third, 1.0));
+    let mean = from_fn(|i| (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0);
+    let (time, state) = (time + length, ahead(&mean, 1.0));
+    Moment::of::<F, N>(time, &state, &motion.derivative(time, &state))
+}
+
 /// The part of a step at which it meets the stop altitude or leaves the stretch of a formula, whichever comes first.
 fn first_cut<F: Formulation<N>, const N: usize>(
     passage: &Passage<F, N>,
@@ -316,6 +372,10 @@ pub(super) fn regular<F: Formulation<N>, const N: usize>(
 const SINGULAR: f64 = 1e-8;
 /// An integration that fails this close to a singularity fails because of it.
 const NEARLY_SINGULAR: f64 = 1e-2;
+/// The motion is followed ahead for this part of the time in which an orbit here turns by a radian.
+const FORESIGHT: f64 = 3e-3;
+/// By so much the altitude must change to tell where it goes, m: more than a rounding of the radius.
+const MOVES: f64 = 1e-6;
 /// From this part of a step on, a place counts as its end.
 const AT_END: f64 = 1.0 - 1e-9;
 /// An integration that fails where no more than this part of the mass is left fails because of it.

@@ -4,23 +4,10 @@ use std::cell::OnceCell;
 
 use num_dual::Dual64;
 
-use crate::coordinates::PlanetFixed;
+use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Formulation, Loads, Switch, moving};
-
-/// A time and the state then, both moving along the flow: what is computed from them comes with its rate of change.
-pub(super) struct Moment {
-    pub(super) time: Dual64,
-    pub(super) state: PlanetFixed<Dual64>,
-}
-
-impl Moment {
-    /// Of a formulation's numbers and their rates.
-    pub(super) fn of<F: Formulation<N>, const N: usize>(time: f64, state: &[f64; N], derivative: &[f64; N]) -> Self {
-        Self { time: Dual64::new(time, 1.0), state: F::planet_fixed(&moving(state, derivative)) }
-    }
-}
+use crate::motion::{Formulation, Loads, Moment, Switch};
 
 /// A step that was flown.
 pub(super) struct Passage<'a, F, const N: usize> {
@@ -67,25 +54,24 @@ impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
     /// The loads at the end.
     pub(super) fn loads_at_end(&self) -> &Loads<Dual64> {
         self.loads_at_end.get_or_init(|| {
-            let Moment { time, state } = self.end();
+            let Moment { time, state, .. } = self.end();
             self.motion.forces().loads(time, &state)
         })
     }
 
-    /// What an event may wait for, at the end.
-    pub(super) fn quantity_at_end(&self, quantity: Quantity) -> Dual64 {
+    /// What an event may wait for, at the end; ranges from the beginning of `track`.
+    pub(super) fn quantity_at_end(&self, quantity: Quantity, track: &GreatCircle<Dual64>) -> Dual64 {
+        let forces = self.motion.forces();
         *self.quantities_at_end[quantity as usize].get_or_init(|| {
-            let Moment { time, state } = self.end();
-            self.loads_at_end()
-                .quantity(quantity)
-                .unwrap_or_else(|| self.motion.forces().quantity(quantity, time, &state))
+            let of_loads = self.loads_at_end().quantity(quantity, forces.heating());
+            of_loads.unwrap_or_else(|| forces.quantity(quantity, &self.end(), track))
         })
     }
 
     /// The quantities of the switches, at the end.
     pub(super) fn readings_at_end(&self) -> &[Dual64; Switch::ALL.len()] {
         self.readings_at_end.get_or_init(|| {
-            let Moment { time, state } = self.end();
+            let Moment { time, state, .. } = self.end();
             self.motion.forces().readings(time, &state)
         })
     }

@@ -2,10 +2,10 @@
 
 use num_dual::Dual64;
 
-use super::passage::{Moment, Passage};
+use super::passage::Passage;
 use crate::control::Against;
 use crate::integrate::event;
-use crate::motion::{Forces, Formulation, Quantity, Switch};
+use crate::motion::{Forces, Formulation, Moment, Quantity, Switch};
 
 /// The quantities on which formulas depend, with their rates, at the end of the last step; zero where there is none.
 #[derive(Clone, Copy)]

@@ -2,6 +2,7 @@
 
 use reentry::event::{
     Condition as CoreCondition, Direction, Effect as CoreEffect, Engine, Event as CoreEvent, Quantity as CoreQuantity,
+    Trigger,
 };
 use reentry::propulsion::{Axis as CoreAxis, Impulse, Thrust as CoreThrust};
 use reentry::scenario::Bound;
@@ -12,6 +13,7 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
+use super::json::shown;
 use super::reader::{Fault, Object};
 use super::vehicle::{Aerodynamics, Vehicle};
 
@@ -32,42 +34,90 @@ pub struct Event {
     pub then: Effect,
 }
 
-/// A quantity passes a value, downwards or upwards: exactly one of these.
+/// A quantity passes a value, downwards or upwards, or so much time has passed since another event.
 ///
-/// Met at the first instant at which the quantity, having been on the near side, is on the value or beyond, whether it moved there or
-/// jumped, as the load factor does where a parachute opens. A quantity that begins on the value meets it where it moves on; one that
-/// begins beyond must come back first.
-#[derive(Clone, Copy, Debug, ToSchema)]
+/// A condition on a quantity is met at the first instant at which the quantity, having been on the near side, is on the value or beyond,
+/// whether it moved there or jumped, as the load factor does where a parachute opens. A quantity that begins on the value meets it at
+/// once if it moves on to the far side, however slowly; one that begins beyond must come back first.
+#[derive(Clone, Debug, ToSchema)]
 pub struct Condition {
-    /// Which.
-    pub quantity: Quantity,
+    /// Which quantity passes the value.
+    #[schema(required = false, value_type = Quantity)]
+    pub quantity: Option<CoreQuantity>,
     /// The value, from above, in the unit of the quantity; an angle in `angle_unit`. Not for time.
     #[schema(required = false, value_type = f64)]
     pub falls_through: Option<f64>,
     /// The value, from below, in the unit of the quantity; an angle in `angle_unit`.
     #[schema(required = false, value_type = f64)]
     pub rises_through: Option<f64>,
+    /// The name of another event, which happens before.
+    #[schema(required = false, value_type = String)]
+    pub event: Option<String>,
+    /// Seconds after that event.
+    #[schema(required = false, value_type = f64, minimum = 0, maximum = 1e9, default = 0)]
+    pub delay: Option<f64>,
 }
 
-/// What may pass a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Since the start, s.
-    Time,
-    /// Along the radius vector, m.
-    Altitude,
-    /// Relative to the rotating planet, m/s.
-    Speed,
-    /// The speed relative to the air over that of sound; needs an atmosphere that has a temperature.
-    Mach,
-    /// ½ρV² of the speed relative to the air, Pa.
-    DynamicPressure,
-    /// Lift, drag and thrust over mass and 9.80665 m/s².
-    LoadFactor,
-    /// Of the velocity relative to the planet.
-    FlightPathAngle,
+/// What may pass a value, with its name and its meaning.
+pub static QUANTITIES: [(&str, CoreQuantity, &str); 21] = [
+    ("time", CoreQuantity::Time, "since the start, s"),
+    ("altitude", CoreQuantity::Altitude, "along the radius vector, m"),
+    ("speed", CoreQuantity::Speed, "relative to the rotating planet, m/s"),
+    (
+        "mach",
+        CoreQuantity::Mach,
+        "the speed relative to the air over that of sound; needs an atmosphere that has a speed of sound",
+    ),
+    ("dynamic_pressure", CoreQuantity::DynamicPressure, "½ρV² of the speed relative to the air, Pa"),
+    ("load_factor", CoreQuantity::LoadFactor, "lift, drag and thrust over mass and 9.80665 m/s²"),
+    ("flight_path_angle", CoreQuantity::FlightPathAngle, "of the velocity relative to the planet"),
+    ("mass", CoreQuantity::Mass, "of the vehicle, kg"),
+    ("air_speed", CoreQuantity::AirSpeed, "relative to the air, m/s"),
+    ("inertial_speed", CoreQuantity::InertialSpeed, "relative to inertial space, m/s"),
+    (
+        "specific_energy",
+        CoreQuantity::SpecificEnergy,
+        "half the squared inertial speed and the potential of gravity, J/kg",
+    ),
+    (
+        "apoapsis_altitude",
+        CoreQuantity::ApoapsisAltitude,
+        "of the osculating orbit, above the equatorial radius, m; 1e13 m where it is not bound",
+    ),
+    ("periapsis_altitude", CoreQuantity::PeriapsisAltitude, "of the osculating orbit, above the equatorial radius, m"),
+    ("inclination", CoreQuantity::Inclination, "of the osculating orbit to the equator"),
+    ("heat_flux", CoreQuantity::HeatFlux, "into the stagnation point, W/m²; needs heating"),
+    ("heat_load", CoreQuantity::HeatLoad, "into the stagnation point since the start, J/m²; needs heating"),
+    (
+        "wall_temperature",
+        CoreQuantity::WallTemperature,
+        "at which the wall radiates as much as it gets, K; needs heating",
+    ),
+    (
+        "downrange",
+        CoreQuantity::Downrange,
+        "along the great circle of the initial heading, m; needs an initial heading",
+    ),
+    ("ground_range", CoreQuantity::GroundRange, "great-circle distance from the initial ground point, m"),
+    ("deceleration", CoreQuantity::Deceleration, "-dV/dt of the speed relative to the planet, m/s²"),
+    ("density", CoreQuantity::Density, "of the air, kg/m³"),
+];
+
+/// The schema of a name in [`QUANTITIES`].
+pub struct Quantity;
+
+impl PartialSchema for Quantity {
+    fn schema() -> RefOr<Schema> {
+        let meanings: Vec<_> = QUANTITIES.iter().map(|(name, _, meaning)| format!("`{name}`: {meaning}")).collect();
+        ObjectBuilder::new()
+            .schema_type(Type::String)
+            .enum_values(Some(QUANTITIES.map(|(name, ..)| name)))
+            .description(Some(format!("What may pass a value. {}.", meanings.join(". "))))
+            .into()
+    }
 }
+
+impl ToSchema for Quantity {}
 
 /// What an event changes, from its instant on; what is left out stays as it is.
 #[derive(Clone, Debug, Default, ToSchema)]
@@ -163,8 +213,8 @@ impl Event {
         Some(Self { name, when: when?, then: then? })
     }
 
-    pub(super) fn to_core(&self, unit: AngleUnit) -> CoreEvent {
-        CoreEvent { when: self.when.to_core(unit), then: self.then.to_core() }
+    pub(super) fn to_core(&self, unit: AngleUnit, events: &[Self]) -> CoreEvent {
+        CoreEvent { when: self.when.to_core(unit, events), then: self.then.to_core() }
     }
 
     /// Whether it may change the mass.
@@ -199,47 +249,56 @@ impl Event {
 
 impl Condition {
     pub(super) fn read(object: &mut Object) -> Option<Self> {
-        let quantities = [
-            ("time", Quantity::Time),
-            ("altitude", Quantity::Altitude),
-            ("speed", Quantity::Speed),
-            ("mach", Quantity::Mach),
-            ("dynamic_pressure", Quantity::DynamicPressure),
-            ("load_factor", Quantity::LoadFactor),
-            ("flight_path_angle", Quantity::FlightPathAngle),
-        ];
-        let quantity = object.choice("quantity", &quantities);
+        let by_event = object.exactly_one(&["quantity", "event"])? == "event";
+        if by_event {
+            let event = object.optional_string("event");
+            let delay = object.number_or("delay", Bound::TIME, 0.0);
+            return Some(Self {
+                quantity: None,
+                falls_through: None,
+                rises_through: None,
+                event: Some(event?),
+                delay: Some(delay?),
+            });
+        }
+        let quantity = object.choice("quantity", &QUANTITIES.map(|(name, quantity, _)| (name, quantity)));
         let way = object.exactly_one(&["falls_through", "rises_through"])?;
-        let value = match quantity? {
-            Quantity::FlightPathAngle => object.angle(way, Bound::QUARTER_TURN),
-            quantity => object.number(way, quantity.to_core().bound()),
+        let quantity = quantity?;
+        let value = if quantity.is_angle() {
+            object.angle(way, quantity.bound())
+        } else {
+            object.number(way, quantity.bound())
         };
         let (falls_through, rises_through) =
             if way == "falls_through" { (Some(value?), None) } else { (None, Some(value?)) };
-        Some(Self { quantity: quantity?, falls_through, rises_through })
+        Some(Self { quantity: Some(quantity), falls_through, rises_through, event: None, delay: None })
     }
 
-    pub(super) fn to_core(self, unit: AngleUnit) -> CoreCondition {
+    /// The core's trigger; one that waits for an event of no name in the list waits for one beyond its end.
+    pub(super) fn to_core(&self, unit: AngleUnit, events: &[Event]) -> Trigger {
+        let Some(quantity) = self.quantity else {
+            let named = |event: &Event| event.name.is_some() && event.name == self.event;
+            let event = events.iter().position(named).unwrap_or(events.len());
+            return Trigger::After { event, delay: self.delay.unwrap_or_default() };
+        };
         let (value, direction) = match (self.falls_through, self.rises_through) {
             (Some(value), _) => (value, Direction::Falling),
             (None, value) => (value.unwrap_or_default(), Direction::Rising),
         };
-        let value = if self.quantity == Quantity::FlightPathAngle { unit.to_radians(value) } else { value };
-        CoreCondition { quantity: self.quantity.to_core(), value, direction }
+        let value = if quantity.is_angle() { unit.to_radians(value) } else { value };
+        CoreCondition { quantity, value, direction }.into()
     }
-}
 
-impl Quantity {
-    fn to_core(self) -> CoreQuantity {
-        match self {
-            Self::Time => CoreQuantity::Time,
-            Self::Altitude => CoreQuantity::Altitude,
-            Self::Speed => CoreQuantity::Speed,
-            Self::Mach => CoreQuantity::Mach,
-            Self::DynamicPressure => CoreQuantity::DynamicPressure,
-            Self::LoadFactor => CoreQuantity::LoadFactor,
-            Self::FlightPathAngle => CoreQuantity::FlightPathAngle,
-        }
+    /// The name of an event that is waited for, which must be that of one event alone; `place` is that of the condition.
+    pub(super) fn name_fault(&self, place: &str, events: &[Event]) -> Option<Fault> {
+        let name = self.event.as_deref()?;
+        let named = events.iter().filter(|event| event.name.as_deref() == Some(name)).count();
+        let detail = match named {
+            0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
+            1 => return None,
+            _ => format!("must be the name of one event, got {}, the name of {named}", shown(&json!(name))),
+        };
+        Some(Fault::new(format!("{place}/event"), detail))
     }
 }
 

@@ -278,15 +278,16 @@ impl SimulateRequest {
 
     pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
         let planet = self.planet.core;
-        let stop = self.stop.to_core(self.angle_unit);
+        let stop = self.stop.to_core(self.angle_unit, &self.events);
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &planet);
-        let areas = Event::area_faults(&self.events, &self.vehicle);
+        let mut across = Event::area_faults(&self.events, &self.vehicle);
+        across.extend(self.name_faults());
         let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
         let initial_state = match initial_state {
             Ok((state, _)) if of_planet.is_empty() => state,
             other => {
                 let of_state = other.err().unwrap_or_default();
-                return Err(of_planet.into_iter().chain(areas).chain(of_state).collect());
+                return Err(of_planet.into_iter().chain(across).chain(of_state).collect());
             }
         };
         let case = Case {
@@ -297,16 +298,28 @@ impl SimulateRequest {
             vehicle: self.vehicle.to_core(),
             control: self.control.to_core(self.angle_unit),
             heating: self.heating.map(Heating::to_core),
-            events: self.events.iter().map(|event| event.to_core(self.angle_unit)).collect(),
+            events: self.events.iter().map(|event| event.to_core(self.angle_unit, &self.events)).collect(),
             initial_state,
             stop,
             solver: self.solver.to_core(),
         };
         match Scenario::new(case) {
-            Ok(scenario) if areas.is_empty() => Ok(scenario),
-            Ok(_) => Err(areas),
-            Err(error) => Err(error.0.iter().map(fault).chain(areas).collect()),
+            Ok(scenario) if across.is_empty() => Ok(scenario),
+            Ok(_) => Err(across),
+            Err(error) => {
+                // A name of no event is among the faults, with the name.
+                let of_core = error.0.iter().filter(|fault| !matches!(fault, scenario::Fault::NoSuchEvent { .. }));
+                Err(of_core.map(fault).chain(across).collect())
+            }
         }
+    }
+
+    /// Events that are waited for by a name that none of them has, or several.
+    fn name_faults(&self) -> Vec<Fault> {
+        let events = self.events.iter().enumerate();
+        let events = events.map(|(index, event)| (format!("/events/{index}/when"), &event.when));
+        let stops = self.stop.when.iter().enumerate().map(|(index, when)| (format!("/stop/when/{index}"), when));
+        events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, &self.events)).collect()
     }
 }
 
@@ -316,7 +329,11 @@ pub fn fault(fault: &scenario::Fault) -> Fault {
         scenario::Fault::OutOfBounds { field, .. } | scenario::Fault::NoTemperature { field } => {
             format!("/{}", field.replace('.', "/"))
         }
-        scenario::Fault::TimeFalls { field } => format!("/{}", field.replace('.', "/")),
+        scenario::Fault::TimeFalls { field }
+        | scenario::Fault::NoHeating { field }
+        | scenario::Fault::NoHeading { field }
+        | scenario::Fault::NoSuchEvent { field }
+        | scenario::Fault::NeverHappens { field } => format!("/{}", field.replace('.', "/")),
         scenario::Fault::LowCeiling { .. } => "/stop/ceiling".to_owned(),
         scenario::Fault::NoNoseRadius => "/vehicle/nose_radius".to_owned(),
         scenario::Fault::OddShape { .. } => "/planet/polar_radius".to_owned(),
@@ -345,9 +362,9 @@ impl Stop {
         Some(Self { altitude: altitude?, time: time?, ceiling, when: when? })
     }
 
-    fn to_core(&self, unit: AngleUnit) -> scenario::Stop {
+    fn to_core(&self, unit: AngleUnit, events: &[Event]) -> scenario::Stop {
         let Self { altitude, time, ceiling, ref when } = *self;
-        scenario::Stop { altitude, time, ceiling, when: when.iter().map(|when| when.to_core(unit)).collect() }
+        scenario::Stop { altitude, time, ceiling, when: when.iter().map(|when| when.to_core(unit, events)).collect() }
     }
 }
 

@@ -69,7 +69,7 @@ export function inUnit(tree: Case, unit: AngleUnit): Case {
   const walk = (value: unknown): unknown => {
     if (Array.isArray(value)) return value.map(walk);
     if (typeof value !== 'object' || value === null) return value;
-    const ofAngle = 'quantity' in value && value.quantity === 'flight_path_angle';
+    const ofAngle = 'quantity' in value && (value.quantity === 'flight_path_angle' || value.quantity === 'inclination');
     return Object.fromEntries(
       Object.entries(value).map(([name, inner]) => {
         if (ofAngle && (name === 'falls_through' || name === 'rises_through')) return [name, scale(inner)];

@@ -289,6 +289,20 @@ const QUANTITIES = {
   dynamic_pressure: 'Dynamic pressure, Pa',
   load_factor: 'Load factor, g',
   flight_path_angle: 'Flight-path angle',
+  mass: 'Mass, kg',
+  air_speed: 'Air speed, m/s',
+  inertial_speed: 'Inertial speed, m/s',
+  specific_energy: 'Specific energy, J/kg',
+  apoapsis_altitude: 'Apoapsis altitude, m',
+  periapsis_altitude: 'Periapsis altitude, m',
+  inclination: 'Inclination',
+  heat_flux: 'Heat flux, W/m²',
+  heat_load: 'Heat load, J/m²',
+  wall_temperature: 'Wall temperature, K',
+  downrange: 'Downrange, m',
+  ground_range: 'Ground range, m',
+  deceleration: 'Deceleration, m/s²',
+  density: 'Density, kg/m³',
 } satisfies Record<Schemas['Quantity'], string>;
 
 const CONDITION: Field = {
@@ -299,6 +313,8 @@ const CONDITION: Field = {
     quantity: { kind: 'words', label: 'Quantity', words: QUANTITIES },
     falls_through: n('falls through', undefined, 'way'),
     rises_through: n('rises through', undefined, 'way'),
+    event: { kind: 'text', label: 'or after the event', hint: 'its name' },
+    delay: n('Delay after it', 's'),
   } satisfies Of<Schemas['Condition']>,
 };
 
