@@ -249,8 +249,14 @@ impl Event {
 
 impl Condition {
     pub(super) fn read(object: &mut Object) -> Option<Self> {
-        let by_event = object.exactly_one(&["quantity", "event"])? == "event";
-        if by_event {
+        let Some(way) = object.exactly_one(&["quantity", "event"]) else {
+            // Which of the others belong here is not known.
+            for name in ["falls_through", "rises_through", "delay"] {
+                object.has(name);
+            }
+            return None;
+        };
+        if way == "event" {
             let event = object.optional_string("event");
             let delay = object.number_or("delay", Bound::TIME, 0.0);
             return Some(Self {
