@@ -152,6 +152,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, got ",
                 "/control/bank_angle/interpolation" => "must be one of linear, step, got ",
                 "/solver/formulation" => "must be one of cartesian, spherical, got ",
+                "/state/frame" | "/initial_state/frame" => "must be one of date, teme, gcrf, got ",
                 _ => {
                     "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, inertial_flight_path, got "
                 }

@@ -7,7 +7,7 @@ use std::fmt;
 use std::ops::Range;
 
 use reentry::coordinates::earth_rotation_angle;
-use reentry::planet::Planet;
+use reentry::scenario::Bound;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, Type};
@@ -23,10 +23,14 @@ pub struct SiderealTime(pub f64);
 
 impl PartialSchema for SiderealTime {
     fn schema() -> RefOr<Schema> {
-        let seconds = ObjectBuilder::new().schema_type(Type::Number).description(Some("Seconds; answers give these."));
+        let seconds = ObjectBuilder::new()
+            .schema_type(Type::Number)
+            .minimum(Some(Bound::SIDEREAL_TIME.minimum))
+            .maximum(Some(Bound::SIDEREAL_TIME.maximum))
+            .description(Some("Seconds; answers give these."));
         let clock = ObjectBuilder::new()
             .schema_type(Type::String)
-            .description(Some("`HH:MM:SS.s`, the hours with two digits or more."))
+            .description(Some("`HH:MM:SS.s`, the hours with two digits or more, up to 1e9 s."))
             .pattern(Some(CLOCK_PATTERN));
         OneOfBuilder::new()
             .item(seconds)
@@ -51,11 +55,14 @@ impl SiderealTime {
     /// With what is wrong.
     pub fn read(value: &Value) -> Result<Self, String> {
         let fault = || format!("must be a number of seconds or \"HH:MM:SS.s\", got {}", shown(value));
-        match value {
-            Value::Number(number) => number.as_f64().map(Self).ok_or_else(fault),
-            Value::String(clock) => clock_seconds(clock).map(Self).ok_or_else(fault),
+        let seconds = match value {
+            Value::Number(number) => number.as_f64().ok_or_else(fault),
+            Value::String(clock) => clock_seconds(clock).ok_or_else(fault),
             _ => Err(fault()),
-        }
+        }?;
+        let bound = Bound::SIDEREAL_TIME;
+        let is_sound = bound.admits(seconds);
+        is_sound.then_some(Self(seconds)).ok_or_else(|| format!("must be {bound} s, got {}", shown(value)))
     }
 }
 
@@ -153,12 +160,15 @@ impl Instant {
         Some(Utc { date, second, microsecond: microseconds % 1_000_000 })
     }
 
-    /// The seconds since the frames were aligned; none if the planet does not rotate.
-    ///
-    /// The inertial frame is then the equator and origin of date, and UT1 is taken as UTC (they differ by less than 0.9 s).
-    pub fn sidereal_time(self, planet: &Planet) -> Option<f64> {
-        let seconds = earth_rotation_angle(self.days()) / planet.rotation_rate;
-        seconds.is_finite().then_some(seconds)
+    /// The angle by which the Earth is turned from the equator and origin of date. UT1 is taken as UTC, from which it differs by less
+    /// than 0.9 s.
+    pub fn earth_rotation_angle(self) -> f64 {
+        earth_rotation_angle(self.days())
+    }
+
+    /// The year in UTC.
+    pub fn year(self) -> i64 {
+        Date::after_2000(self.day).map_or(0, |date| date.year)
     }
 
     /// Days (of 86 400 s) of UTC since 2000 January 1, 12 h.
