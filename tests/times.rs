@@ -11,17 +11,17 @@ use crate::check::near;
 
 /// A day, from which the calendar goes on by one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Day {
+struct Date {
     year: i32,
     month: usize,
     day: i32,
 }
 
-const fn day(year: i32, month: usize, day: i32) -> Day {
-    Day { year, month, day }
+const fn day(year: i32, month: usize, day: i32) -> Date {
+    Date { year, month, day }
 }
 
-impl Day {
+impl Date {
     /// The last day of its month: "Thirty days hath September".
     fn last(self) -> i32 {
         match self.month {
@@ -81,7 +81,7 @@ fn utc(text: &str) -> String {
 }
 
 /// The days at whose end there is a leap second: those before the steps of TAI - UTC in ERFA 2.0.1 (`dat.c`; IERS Bulletin C).
-const LEAPS: [Day; 27] = [
+const LEAPS: [Date; 27] = [
     day(1972, 6, 30),
     day(1972, 12, 31),
     day(1973, 12, 31),
@@ -303,7 +303,7 @@ fn a_long_flight_counts_every_leap_second() {
 }
 
 /// Days from 1 January 2000, by adding up years and months.
-fn days_since_2000(date: Day) -> i32 {
+fn days_since_2000(date: Date) -> i32 {
     let of_year = |year: i32| (1..=12).map(|month| day(year, month, 1).last()).sum::<i32>();
     let years: i32 = if date.year < 2000 {
         -(date.year..2000).map(of_year).sum::<i32>()

@@ -25,7 +25,7 @@ fn dated(kind: &str, frame: &str) -> Value {
     with(&request, "/state/frame", frame)
 }
 
-/// At rest in TEME over the Arctic, as asked of SatelliteToolbox (Julia), whose answer this is.
+/// At rest in TEME over the Arctic, as asked of `SatelliteToolbox` (Julia), whose answer this is.
 #[tokio::test]
 async fn vectors_of_sgp4_are_where_another_tool_has_them() {
     let request = json!({
