@@ -2,16 +2,18 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use reentry::Planet;
 use reentry::coordinates::{
     FlightPath, Geodetic, Inertial, InertialFlightPath, NoElements, OrbitShape, OrbitalElements, PlanetFixed,
-    earth_rotation_angle, latitude_and_altitude,
+    earth_rotation_angle, gcrf_to_planet_fixed, greenwich_mean_sidereal_time, latitude_and_altitude,
+    teme_to_planet_fixed, true_anomaly,
 };
 use reentry::planet::Shape;
 use reentry_service::validation::cases::{ELEMENTS, GEODETIC, rows};
+use reentry_service::wire::epoch::Instant;
 
 use crate::check::{angle, near, relative};
 
@@ -160,6 +162,118 @@ fn the_earth_rotation_angle_is_that_of_the_iers_conventions() {
     near("a second", second, 7.292_115_146_7e-5, 1e-10);
 }
 
+/// How far two rotations put a place on the equator apart at most, m.
+fn apart_on_the_ground(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
+    // A rotation by a small angle differs from none by √2 times the angle, in the norm of all its entries.
+    (a - b).norm() / 2_f64.sqrt() * WGS84.equatorial_radius()
+}
+
+#[test]
+fn the_earth_is_turned_as_erfa_turns_it() {
+    let rows: Vec<_> = rows(include_str!("cases/frames/earth_rotation.csv")).collect();
+    assert_eq!(rows.len(), 71 + 33 + 2);
+    let mut worst = [0.0_f64; 3];
+    for row in rows {
+        let (utc, row) = (row[0], numbers(&row[1..]));
+        let days = Instant::read(&serde_json::json!(utc)).unwrap().days();
+        near(utc, days, row[0], 1e-11);
+        angle(utc, greenwich_mean_sidereal_time(days), row[1], 1e-10);
+
+        let [of_gcrf, teme_to_j2000] = [2, 11].map(|at| Matrix3::from_row_slice(&row[at..at + 9]));
+        let teme = Rotation3::from_axis_angle(&Vector3::z_axis(), -row[1]);
+        let [our_gcrf, our_teme] = [gcrf_to_planet_fixed(days), teme_to_planet_fixed(days)].map(|turn| *turn.matrix());
+        let off = [
+            apart_on_the_ground(&our_gcrf, &of_gcrf),
+            apart_on_the_ground(&our_teme, teme.matrix()),
+            // The way round by the equation of the equinoxes, the nutation of 1980 and the precession of 1976.
+            apart_on_the_ground(&(our_gcrf * teme_to_j2000), &our_teme),
+        ];
+        for (worst, off) in worst.iter_mut().zip(off) {
+            *worst = worst.max(off);
+        }
+    }
+    // The terms of the nutation that are left out; roundings of the table and of the days; the theories of 1976 to 1982 beside those of
+    // 2000 and 2006.
+    let allowed = [1.5, 1e-3, 6.0];
+    assert!(worst.iter().zip(allowed).all(|(worst, allowed)| *worst < allowed), "{worst:?} m, {allowed:?} are allowed");
+    assert!(allowed.iter().all(|allowed| *allowed < 10.0), "10 m are promised");
+}
+
+/// A satellite in four frames, as published: D. A. Vallado et al., Revisiting Spacetrack Report #3, AIAA 2006-6753, appendix C; and, in
+/// GCRF, Vallado, Fundamentals of Astrodynamics and Applications, 4th ed. 2013, example 3-14. Its UT1 is 0.4399619 s behind UTC.
+#[test]
+fn a_published_satellite_is_where_it_was() {
+    let utc = Instant::read(&serde_json::json!("2004-04-06T07:51:28.386009Z")).unwrap();
+    let ut1 = utc.days() - 0.439_961_9 / 86_400.0;
+    let kilometres = |x: f64, y: f64, z: f64| Vector3::new(x, y, z) * 1e3;
+    let teme = Inertial {
+        position: kilometres(5_094.180_162_10, 6_127.644_659_50, 6_380.344_532_70),
+        velocity: kilometres(-4.746_131_487, 0.785_818_041, 5.531_931_288),
+    };
+    let gcrf = Inertial {
+        position: kilometres(5_102.508_957_80, 6_123.011_400_70, 6_378.136_928_20),
+        velocity: kilometres(-4.743_220_157_0, 0.790_536_497_0, 5.533_755_727_0),
+    };
+    // The pseudo-Earth-fixed frame: without polar motion.
+    let position = kilometres(-1_033.475_031_30, 7_901.305_585_60, 6_380.344_532_70);
+    let velocity = kilometres(-3.225_632_747_0, -2.872_442_511_0, 5.531_931_288_0);
+    for (what, state, turn, tolerance) in [
+        ("teme", teme, teme_to_planet_fixed(ut1), 0.01),
+        // 0.05" at 10 200 km.
+        ("gcrf", gcrf, gcrf_to_planet_fixed(ut1), 2.5),
+    ] {
+        let found = state.to_planet_fixed_by(&WGS84, &turn);
+        near(what, (found.position - position).norm(), 0.0, tolerance);
+        near(what, (found.velocity - velocity).norm(), 0.0, 1e-3 * tolerance.max(0.1));
+        let back = Inertial::from_planet_fixed_by(&found, &WGS84, &turn);
+        near(what, (back.position - state.position).norm(), 0.0, 1e-14 * 1e7);
+        near(what, (back.velocity - state.velocity).norm(), 0.0, 1e-14 * 1e4);
+    }
+}
+
+/// Kepler's equation by bisection: E - e sin E grows with E.
+fn eccentric_by_bisection(mean: f64, e: f64) -> f64 {
+    let (mut low, mut high) = (0.0, PI);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        // E - sin E without the loss of digits at small E.
+        let less = if middle < 0.1 {
+            middle.powi(3) / 6.0 - middle.powi(5) / 120.0 + middle.powi(7) / 5040.0 - middle.powi(9) / 362_880.0
+        } else {
+            middle - middle.sin()
+        };
+        if (1.0 - e) * middle + e * less < mean { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn keplers_equation_is_solved_up_to_the_parabola() {
+    let eccentricities = [0.0, 1e-300, 1e-9, 0.1, 0.5, 0.9, 0.99, 1.0 - 1e-6, 1.0 - 1e-12, 1.0_f64.next_down()];
+    let means = [0.0, 1e-300, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 2.0, 3.0, PI.next_down(), PI];
+    for e in eccentricities {
+        for mean in means {
+            let what = format!("e = {e:e}, M = {mean:e}");
+            let found = true_anomaly(mean, e);
+            let eccentric = eccentric_by_bisection(mean, e);
+            let expected =
+                2.0 * ((1.0 + e).sqrt() * (eccentric / 2.0).sin()).atan2((1.0 - e).sqrt() * (eccentric / 2.0).cos());
+            // ν as a function of E has a slope of up to √((1+e)/(1-e)) at the periapsis and at the apoapsis its inverse; where 1 - e is a
+            // rounding, the half turn is passed within a few roundings of M.
+            near(&what, found, expected, 1e-14 * expected.max(1e-300) + 1e-15);
+            angle(&what, true_anomaly(-mean, e), -found, 0.0);
+            for turns in [-TAU, TAU] {
+                angle(&what, true_anomaly(mean + turns, e), found, 1e-15 * TAU + 1e-15 * slope(found, e));
+            }
+        }
+    }
+}
+
+/// dν/dM = (1 + e cos ν)² / (1 - e²)^1.5.
+fn slope(true_anomaly: f64, e: f64) -> f64 {
+    (1.0 + e * true_anomaly.cos()).powi(2) / ((1.0 - e) * (1.0 + e)).powf(1.5)
+}
+
 fn place() -> impl Strategy<Value = (f64, f64, f64)> {
     let radius = prop_oneof![6.3e6..6.5e6, 1e3..6e6, 1e7..1e12];
     let latitude = prop_oneof![-FRAC_PI_2..FRAC_PI_2, Just(FRAC_PI_2), Just(-FRAC_PI_2), Just(0.0)];
@@ -306,6 +420,33 @@ proptest! {
         let expected = FlightPath::from_planet_fixed(&fixed).wrapped();
         let back = InertialFlightPath::from_planet_fixed(&fixed, &at_rest);
         prop_assert_eq!(back, inertially(expected));
+    }
+
+    #[test]
+    fn mean_anomaly_there_and_back(
+        mean in 0.0..TAU,
+        e in prop_oneof![0.0..1.0, 0.99..1.0, (0.0..11.0).prop_map(|digits: f64| 1.0 - 10_f64.powf(-digits))],
+    ) {
+        let elements = OrbitalElements {
+            shape: OrbitShape::SemiLatusRectum(7e6),
+            eccentricity: e,
+            inclination: 1.0,
+            raan: 2.0,
+            argument_of_periapsis: 3.0,
+            true_anomaly: true_anomaly(mean, e),
+        };
+        // A rounding of ν is one of M, by the inverse of the slope, and so is that of M itself.
+        let rounding = 1e-14 + 4.0 * f64::EPSILON / slope(elements.true_anomaly, e);
+        angle("mean anomaly", elements.mean_anomaly().unwrap(), mean, rounding);
+        // Kepler's law by the state itself: r v sin γ = e √(GM a) sin E, with E from the radius, M = E - e sin E.
+        let Inertial { position, velocity } = elements.to_inertial(MU);
+        if e > 0.01 && e < 0.999 {
+            let a = elements.semi_latus_rectum() / (1.0 - e * e);
+            let e_sin = position.dot(&velocity) / (MU * a).sqrt();
+            let eccentric = e_sin.atan2(1.0 - position.norm() / a);
+            // The radius keeps 1e-15 of itself, which counts as much more where e is small.
+            angle("by the radius", eccentric - e_sin, mean, 1e-13 / e / (1.0 - e));
+        }
     }
 
     #[test]

@@ -129,8 +129,11 @@ pub fn convert(text: &[u8]) {
             continue;
         }
         let mut request = json!({"angle_unit": answer["angle_unit"], "state": answer[kind]});
-        if let Some(planet) = tree.get("planet") {
-            request["planet"] = planet.clone();
+        // The epoch turns some of the frames.
+        for name in ["planet", "epoch"] {
+            if let Some(value) = tree.get(name) {
+                request[name] = value.clone();
+            }
         }
         let back = strict(&good(converted(request.clone()), &request), &tree);
         for (vector, allowed) in [place, motion] {

@@ -18,6 +18,7 @@ mod analytic;
 mod batch;
 mod convert;
 mod events;
+mod frames;
 mod heating;
 mod limits;
 mod metrics;

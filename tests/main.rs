@@ -24,5 +24,6 @@ mod reference;
 mod regimes;
 mod tables;
 mod tidy;
+mod times;
 mod validation;
 mod verification;

@@ -404,6 +404,60 @@ async fn schema_and_service_read_the_same_sidereal_times() {
     agreement.holds(60);
 }
 
+#[tokio::test]
+async fn schema_and_service_ask_the_same_of_inertial_frames() {
+    let mut agreement = Agreement::new();
+    let of = |path: &str, kind: &str| match path {
+        "/convert" => (conversion(kind), "/state"),
+        "/analytic" => (with(&flight(kind), "/solution", "loh"), "/initial_state"),
+        _ => (flight(kind), "/initial_state"),
+    };
+    for (path, ..) in ENDPOINTS {
+        for kind in KINDS {
+            let (request, place) = of(path, kind);
+            let bare = without(&request, &format!("{place}/sidereal_time"));
+            let undated = without(&bare, "/epoch");
+            for (dated, base) in [(true, bare), (false, undated)] {
+                for (earth, base) in [(true, with(&base, "/planet", json!({}))), (false, base)] {
+                    for (time, angle) in [(None, None), (Some(100), None), (None, Some(0.3)), (Some(100), Some(0.3))] {
+                        for frame in ["date", "teme", "gcrf"] {
+                            let mut request = base.clone();
+                            let state = request.pointer_mut(place).unwrap();
+                            if kind == "eci" || kind == "orbital_elements" {
+                                state["frame"] = json!(frame);
+                            }
+                            for (name, value) in [("sidereal_time", json!(time)), ("sidereal_angle", json!(angle))] {
+                                if !value.is_null() {
+                                    state[name] = value;
+                                }
+                            }
+                            let what = format!(
+                                "{kind} in {frame}, an epoch {dated}, an Earth {earth}, time {time:?}, angle {angle:?}"
+                            );
+                            agreement.agree(path, &request, &what).await;
+                        }
+                    }
+                }
+            }
+        }
+        let (request, place) = of(path, "orbital_elements");
+        let by_mean = without(&request, &format!("{place}/true_anomaly"));
+        let by_mean = with(&by_mean, &format!("{place}/mean_anomaly"), 3.5);
+        agreement.agree(path, &by_mean, "the mean anomaly of an ellipse").await;
+        for eccentricity in [1.0, 1.1] {
+            let unbound = with_all(
+                &by_mean,
+                [
+                    (&format!("{place}/eccentricity"), json!(eccentricity)),
+                    (&format!("{place}/semi_major_axis"), json!(-6.5e7)),
+                ],
+            );
+            agreement.refused(path, &unbound, "the mean anomaly of an unbound orbit").await;
+        }
+    }
+    agreement.holds(800);
+}
+
 /// The pointers of every value inside this one.
 fn pointers(value: &Value, place: &str) -> Vec<String> {
     let at = |name: &str| format!("{place}/{}", name.replace('~', "~0").replace('/', "~1"));

@@ -160,6 +160,7 @@ fn to_degrees(state: &mut Value) {
         "raan",
         "argument_of_periapsis",
         "true_anomaly",
+        "mean_anomaly",
     ] {
         if let Some(angle) = state.get_mut(name) {
             *angle = json!(angle.as_f64().unwrap().to_degrees());
@@ -181,6 +182,7 @@ async fn answered_angles_lie_in_their_ranges() {
                 "/orbital_elements/raan",
                 "/orbital_elements/argument_of_periapsis",
                 "/orbital_elements/true_anomaly",
+                "/derived/mean_anomaly",
                 "/geodetic/azimuth",
             ];
             let half_turns = [

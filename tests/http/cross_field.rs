@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::refusal::{Steady, good_answer};
-use super::requests::{capsule, conversion, flight, state, with, with_all};
+use super::requests::{KINDS, capsule, conversion, flight, state, with, with_all};
 
 /// Refuses the state in both endpoints, with the faults at pointers relative to it.
 async fn refuses_state(steady: &Steady, state: &Value, expected: &[(&str, &str)]) {
@@ -176,16 +176,30 @@ fn planet_at_rest() -> Value {
 }
 
 #[tokio::test]
-async fn an_epoch_says_nothing_about_a_planet_that_does_not_rotate() {
+async fn an_epoch_says_nothing_about_the_angle_of_a_custom_planet() {
     let steady = Steady::new().await;
     for (path, place, request) in
-        [("/simulate", "/initial_state", flight("eci")), ("/convert", "/state", conversion("eci"))]
+        [("/simulate", "/initial_state", flight as fn(&str) -> Value), ("/convert", "/state", conversion)]
     {
-        let at_rest = with(&request, "/planet", planet_at_rest());
-        // The sidereal time is given: none has to follow from the epoch.
-        good_answer(&steady.service, path, &at_rest).await;
-        let request = super::requests::without(&at_rest, &format!("{place}/sidereal_time"));
-        steady.refused_at(path, &request, &[("/epoch", "does not rotate")]).await;
+        for kind in KINDS {
+            for planet in [planet_at_rest(), flight("eci")["planet"].clone()] {
+                let given = with(&request(kind), "/planet", planet);
+                let time = format!("{place}/sidereal_time");
+                let neither = super::requests::without(&given, &time);
+                let by_angle = with(&neither, &format!("{place}/sidereal_angle"), 0.3);
+                let undated = super::requests::without(&neither, "/epoch");
+                for sound in [given, by_angle, undated] {
+                    good_answer(&steady.service, path, &sound).await;
+                }
+                if kind == "eci" || kind == "orbital_elements" {
+                    let phrase = "is required: an epoch says nothing about the angle of a custom planet";
+                    steady.refused_at(path, &neither, &[(&time, phrase)]).await;
+                } else {
+                    // A planet-fixed state needs none; the frames are aligned as without an epoch.
+                    good_answer(&steady.service, path, &neither).await;
+                }
+            }
+        }
     }
 }
 
@@ -218,12 +232,12 @@ async fn faults_across_fields_come_in_one_answer() {
     );
     let planet = ("/planet/polar_radius", "times the equatorial radius");
     let stop = ("/stop/altitude", "the planet's centre");
-    let epoch = ("/epoch", "does not rotate");
-    steady.refused_at("/simulate", &request, &[planet, stop, epoch]).await;
+    let time = ("/initial_state/sidereal_time", "is required");
+    steady.refused_at("/simulate", &request, &[planet, stop]).await;
 
     request["initial_state"] = super::requests::without(&orbit(7e6, 2.0, 0.0), "/sidereal_time");
     let orbit = ("/initial_state/semi_major_axis", "must be negative");
-    steady.refused_at("/simulate", &request, &[planet, stop, epoch, orbit]).await;
+    steady.refused_at("/simulate", &request, &[planet, stop, orbit, time]).await;
     request.as_object_mut().unwrap().remove("epoch");
     steady.refused_at("/simulate", &request, &[planet, stop, orbit]).await;
 }

@@ -278,7 +278,7 @@ const PLANET_RELATIVE: [Row; 6] = [
     ("/geocentric_latitude", Required, Angle(QUARTER)),
     ("/speed", Required, Number(SPEED)),
     ("/flight_path_angle", Required, Angle(QUARTER)),
-    ("/heading", Required, Angle(TURN)),
+    ("/heading", Alternative, Angle(TURN)),
 ];
 
 const GEODETIC: [Row; 6] = [
@@ -298,7 +298,7 @@ const ORBITAL_ELEMENTS: [Row; 6] = [
     ("/inclination", Required, Angle(HALF)),
     ("/raan", Required, Angle(TURN)),
     ("/argument_of_periapsis", Required, Angle(TURN)),
-    ("/true_anomaly", Required, Angle(TURN)),
+    ("/true_anomaly", Alternative, Angle(TURN)),
 ];
 
 const INERTIAL_FLIGHT_PATH: [Row; 6] = [
@@ -358,9 +358,17 @@ pub(crate) fn fields() -> Vec<Field> {
         for (path, request, state) in
             [("/simulate", flight(kind), "/initial_state"), ("/convert", conversion(kind), "/state")]
         {
-            let own = ["/type", "/sidereal_time"];
-            add(path, &request, state, &[("", Required, Object), (own[0], Required, Name)]);
-            add(path, &request, state, &[(own[1], Optional, SiderealTime)]);
+            add(path, &request, state, &[("", Required, Object), ("/type", Required, Name)]);
+            // On a custom planet an epoch asks inertial states for the time.
+            let inertial = ["eci", "orbital_elements"].contains(&kind);
+            let timed = if inertial { named(request.clone()) } else { request.clone() };
+            add(path, &timed, state, &[("/sidereal_time", Optional, SiderealTime)]);
+            let turned =
+                with(&without(&timed, &format!("{state}/sidereal_time")), &format!("{state}/sidereal_angle"), 0.3);
+            add(path, &turned, state, &[("/sidereal_angle", Optional, Angle(TURN))]);
+            if inertial {
+                add(path, &request, state, &[("/frame", Optional, Name)]);
+            }
             let rows: &[Row] = match kind {
                 "planet_relative" => &PLANET_RELATIVE,
                 "geodetic" => &GEODETIC,

@@ -67,7 +67,7 @@ fn unsound(answer: &Answer) -> Option<String> {
         StatusCode::OK => {
             // Not a number and infinity are written as null, which only these may be; without elements all of them are.
             let mut answer = answer.json();
-            let bound = ["/derived/apoapsis_radius", "/derived/period"];
+            let bound = ["/derived/apoapsis_radius", "/derived/period", "/derived/mean_anomaly"];
             let elements = ["/orbital_elements", "/derived/semi_latus_rectum", "/derived/periapsis_radius"];
             let has_elements = !answer["orbital_elements"].is_null();
             for pointer in bound.into_iter().chain(elements.into_iter().filter(|_| !has_elements)) {

@@ -8,9 +8,11 @@ pub(crate) const KINDS: [&str; 6] =
 
 /// The fields of which exactly one is given, each with the kind of its state: the one that [`state`] gives, the other, and a value
 /// for that.
-pub(crate) const ALTERNATIVES: [(&str, &str, &str, f64); 4] = [
+pub(crate) const ALTERNATIVES: [(&str, &str, &str, f64); 6] = [
     ("planet_relative", "altitude", "radius", 6.5e6),
+    ("planet_relative", "heading", "azimuth", 1.1),
     ("orbital_elements", "semi_major_axis", "semi_latus_rectum", 6.5e6),
+    ("orbital_elements", "true_anomaly", "mean_anomaly", 3.5),
     ("inertial_flight_path", "altitude", "radius", 6.5e6),
     ("inertial_flight_path", "inertial_heading", "inertial_azimuth", 1.1),
 ];
@@ -22,11 +24,15 @@ pub(crate) fn state(kind: &str) -> Value {
             "speed": 7000, "flight_path_angle": -0.05, "heading": 0.5, "sidereal_time": 100}),
         "geodetic" => json!({"type": kind, "geodetic_altitude": 9e4, "longitude": 0.7, "geodetic_latitude": -0.4,
             "speed": 7000, "flight_path_angle": -0.05, "azimuth": 1.5, "sidereal_time": 100}),
-        "ecef" | "eci" => {
+        "ecef" => {
             json!({"type": kind, "position": [4e6, -3e6, 4.1e6], "velocity": [4e3, 6e3, 200], "sidereal_time": 100})
         }
-        "orbital_elements" => json!({"type": kind, "semi_major_axis": 6.5e6, "eccentricity": 0.01, "inclination": 1.1,
-            "raan": 2.1, "argument_of_periapsis": 0.3, "true_anomaly": 3.5, "sidereal_time": 100}),
+        "eci" => json!({"type": kind, "frame": "date", "position": [4e6, -3e6, 4.1e6], "velocity": [4e3, 6e3, 200],
+            "sidereal_time": 100}),
+        "orbital_elements" => {
+            json!({"type": kind, "frame": "date", "semi_major_axis": 6.5e6, "eccentricity": 0.01, "inclination": 1.1,
+            "raan": 2.1, "argument_of_periapsis": 0.3, "true_anomaly": 3.5, "sidereal_time": 100})
+        }
         "inertial_flight_path" => json!({"type": kind, "altitude": 9e4, "longitude": -0.7, "geocentric_latitude": 0.4,
             "inertial_speed": 7400, "inertial_flight_path_angle": -0.05, "inertial_heading": 0.5, "sidereal_time": 100}),
         _ => panic!("no such kind of state: {kind}"),

@@ -154,7 +154,8 @@ async fn a_bare_atmosphere_and_empty_parts_have_the_defaults_as_well() {
 async fn the_echo_flown_again_gives_the_same_answer() {
     let service = Service::new();
     let mut cases: Vec<_> = KINDS.iter().map(|kind| flight(kind)).collect();
-    cases.extend(cases.clone().iter().zip(KINDS).map(|(case, _)| without(case, "/initial_state/sidereal_time")));
+    let on_earth = cases.iter().map(|case| with(case, "/planet", json!({})));
+    cases.extend(on_earth.map(|case| without(&case, "/initial_state/sidereal_time")).collect::<Vec<_>>());
     for text in ["target_1", "target_2", "impulse", "lifting_capsule"] {
         let file = format!("{}/../openapi/examples/{text}.json", env!("CARGO_MANIFEST_DIR"));
         cases.push(reentry_tests::cases::read_json(file.as_ref()));
@@ -284,7 +285,7 @@ async fn an_epoch_and_an_inertial_state_warn_of_the_frame() {
     let service = Service::new();
     for kind in KINDS {
         for (epoch, given) in [(json!("2026-11-22T12:00:00Z"), true), (json!(null), false)] {
-            let mut case = without(&flight(kind), "/epoch");
+            let mut case = with(&without(&flight(kind), "/epoch"), "/planet", json!({}));
             if given {
                 case["epoch"] = epoch;
             }
@@ -295,7 +296,9 @@ async fn an_epoch_and_an_inertial_state_warn_of_the_frame() {
             assert_eq!(warns, given && inertial, "{kind}");
             if warns {
                 assert_eq!(names(&warnings[0]), ["code", "detail"]);
-                assert!(warnings[0]["detail"].as_str().unwrap().contains("J2000"));
+                let detail = warnings[0]["detail"].as_str().unwrap();
+                assert!(detail.starts_with("frame date was taken: the Earth's equator of date"), "{detail}");
+                assert!(detail.contains("frame selects teme for vectors of SGP4 and gcrf for J2000"), "{detail}");
             }
         }
     }

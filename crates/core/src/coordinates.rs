@@ -7,11 +7,13 @@
 //! ```
 //!
 //! Everything passes through [`PlanetFixed`]: position and velocity relative to the rotating planet, x through longitude 0
-//! on the equator, z along the pole. The [`Inertial`] frame shares its z axis; at `sidereal_time` Δt after the two were aligned
-//! the planet-fixed frame is turned by ωΔt to the east (Jameson 2006, equation 1).
+//! on the equator, z along the pole. The [`Inertial`] frame of date shares its z axis; at `sidereal_time` Δt after the two were
+//! aligned the planet-fixed frame is turned by ωΔt to the east (Jameson 2006, equation 1). Those of SGP4 and of J2000 lie beside it
+//! as the Earth is turned at an instant ([`teme_to_planet_fixed`], [`gcrf_to_planet_fixed`]).
 //!
 //! Angles are in radians. The angles of a zero velocity are 0, as is the heading of one that has no horizontal part.
 
+mod earth;
 mod flight_path;
 mod geodetic;
 mod great_circle;
@@ -19,16 +21,19 @@ mod inertial;
 mod inertial_flight_path;
 mod orbital_elements;
 
+pub use earth::{
+    TESTED_YEARS, earth_rotation_angle, gcrf_to_planet_fixed, greenwich_mean_sidereal_time, teme_to_planet_fixed,
+};
 pub use flight_path::FlightPath;
 pub use geodetic::{Geodetic, latitude_and_altitude};
 pub use great_circle::GreatCircle;
-pub use inertial::{Inertial, earth_rotation_angle};
+pub use inertial::{Inertial, about_pole};
 pub use inertial_flight_path::InertialFlightPath;
-pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements};
+pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements, true_anomaly};
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 use crate::scalar::{Scalar, length};
 
@@ -40,6 +45,9 @@ pub struct PlanetFixed<S: nalgebra::Scalar> {
     /// Velocity relative to the rotating planet, m/s.
     pub velocity: Vector3<S>,
 }
+
+/// A rotation of components from one frame to another.
+pub type Rotation = Rotation3<f64>;
 
 /// The directions east, north and up at a place.
 #[derive(Clone, Copy, Debug)]

@@ -31,9 +31,11 @@ use crate::wire::scenario::Output;
 pub struct Document;
 
 /// Fields of which exactly one is given, by the name of their object.
-const ALTERNATIVES: [(&str, &[&str]); 6] = [
+const ALTERNATIVES: [(&str, &[&str]); 8] = [
     ("PlanetRelative", &["radius", "altitude"]),
+    ("PlanetRelative", &["heading", "azimuth"]),
     ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),
+    ("OrbitalElements", &["true_anomaly", "mean_anomaly"]),
     ("InertialFlightPath", &["radius", "altitude"]),
     ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
     ("LayeredAtmosphere", &["layers", "preset"]),
@@ -247,6 +249,34 @@ fn theory() -> Value {
     })
 }
 
+/// Of the time and the angle between the frames at most one is given.
+fn one_sidereal() -> Value {
+    json!({"not": {"required": ["sidereal_time", "sidereal_angle"]}})
+}
+
+/// The frames that the epoch turns.
+fn frames_of_epoch() -> Value {
+    json!({"properties": {"frame": {"enum": ["teme", "gcrf"]}}, "required": ["frame"]})
+}
+
+/// These have neither time nor angle.
+fn no_sidereal() -> Value {
+    json!({"if": frames_of_epoch(), "then": {"properties": {"sidereal_time": false, "sidereal_angle": false}}})
+}
+
+/// What an inertial state asks of epoch and planet.
+fn inertial_states(state: &str) -> Vec<Value> {
+    let of = |schema: Value| json!({"properties": {(state): schema}, "required": [state]});
+    let custom = json!({"properties": {"model": {"const": "custom"}}, "required": ["model"]});
+    let on_custom = json!({"properties": {"planet": custom}, "required": ["planet"]});
+    let inertial = json!({"properties": {"type": {"enum": ["eci", "orbital_elements"]}}, "required": ["type"]});
+    let turned = json!({"anyOf": [{"required": ["sidereal_time"]}, {"required": ["sidereal_angle"]}]});
+    vec![
+        json!({"if": of(frames_of_epoch()), "then": {"required": ["epoch"], "not": on_custom}}),
+        json!({"if": {"required": ["epoch"], "allOf": [on_custom, of(inertial)]}, "then": of(turned)}),
+    ]
+}
+
 /// Those that stand side by side, as a schema has one `if`.
 fn parallel_conditions(name: &str) -> Vec<Value> {
     let is = |field: &str, value: &str| json!({"properties": {(field): {"const": value}}, "required": [field]});
@@ -259,6 +289,14 @@ fn parallel_conditions(name: &str) -> Vec<Value> {
             // Without a degree it is 2, and the condition holds.
             vec![below(3, "j3"), below(4, "j4")]
         }
+        "PlanetRelative" | "Geodetic" | "Ecef" | "InertialFlightPath" => vec![one_sidereal()],
+        "Eci" => vec![one_sidereal(), no_sidereal()],
+        "OrbitalElements" => {
+            let bound = json!({"properties": {"eccentricity": {"exclusiveMaximum": 1}}});
+            vec![one_sidereal(), no_sidereal(), json!({"if": {"required": ["mean_anomaly"]}, "then": bound})]
+        }
+        "SimulateRequest" | "AnalyticRequest" => inertial_states("initial_state"),
+        "ConvertRequest" => inertial_states("state"),
         "Condition" => {
             let of = |(name, quantity, _): &(&str, reentry::event::Quantity, &str)| {
                 let bound = quantity.bound();

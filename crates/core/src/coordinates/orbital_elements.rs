@@ -1,10 +1,10 @@
 //! Classical orbital elements.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::{Inertial, wrap_to_turn};
+use super::{Inertial, wrap_to_half_turns, wrap_to_turn};
 
 /// The size of an orbit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,7 +141,73 @@ impl OrbitalElements {
         self.is_bound().then(|| TAU * a * (a / gravitational_parameter).sqrt())
     }
 
+    /// M, from the periapsis in parts of the time of a revolution, in [0, 2π); none for an unbound orbit.
+    ///
+    /// ```text
+    /// tan E/2 = √((1-e)/(1+e)) tan ν/2,   M = E - e sin E
+    /// ```
+    ///
+    /// # Reference
+    /// D. A. Vallado, Fundamentals of Astrodynamics and Applications, 4th ed. 2013, equations 2-4 and 2-14.
+    pub fn mean_anomaly(&self) -> Option<f64> {
+        let e = self.eccentricity;
+        let (sin_half, cos_half) = (self.true_anomaly / 2.0).sin_cos();
+        let eccentric = 2.0 * ((1.0 - e).sqrt() * sin_half).atan2((1.0 + e).sqrt() * cos_half);
+        self.is_bound().then(|| wrap_to_turn(mean_of_eccentric(eccentric, e)))
+    }
+
     fn is_bound(&self) -> bool {
         1.0 - self.eccentricity >= UNDEFINED
     }
+}
+
+/// ν of an orbit with e < 1 at the mean anomaly, in (-π, π].
+pub fn true_anomaly(mean_anomaly: f64, eccentricity: f64) -> f64 {
+    let e = eccentricity;
+    let mean = wrap_to_half_turns(mean_anomaly);
+    let (sin_half, cos_half) = (eccentric_anomaly(mean.abs(), e) / 2.0).sin_cos();
+    let anomaly = 2.0 * ((1.0 + e).sqrt() * sin_half).atan2((1.0 - e).sqrt() * cos_half);
+    anomaly.copysign(mean)
+}
+
+/// E of a mean anomaly in [0, π]: the root of Kepler's equation.
+///
+/// On these the mean anomaly is a convex function of E, so that Newton's method falls to the root from every point above it. It starts at
+/// the lowest of the bounds M + e, M/(1-e) and (π² M/e)^⅓, the last of E - sin E >= E³/π², and needs some five steps.
+fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
+    let cubic = (PI * PI * mean / e).cbrt();
+    let mut eccentric = (mean + e).min(mean / (1.0 - e)).min(if e > 0.0 { cubic } else { PI }).min(PI);
+    for _ in 0..MOST_STEPS {
+        // 1 - e cos E, without the difference of two numbers near 1.
+        let slope = (1.0 - e) + 2.0 * e * (eccentric / 2.0).sin().powi(2);
+        let next = eccentric - (mean_of_eccentric(eccentric, e) - mean) / slope;
+        // Rounding alone lets it rise, or stay; at M = 0 the slope may be 0.
+        if next >= eccentric {
+            break;
+        }
+        eccentric = next.max(0.0);
+    }
+    eccentric
+}
+
+/// Steps of Newton's method: more than it was ever seen to take, as each doubles the digits.
+const MOST_STEPS: usize = 50;
+
+/// E - e sin E as (1-e) E + e (E - sin E), which keeps its digits where e is near 1 and E near 0.
+fn mean_of_eccentric(eccentric: f64, e: f64) -> f64 {
+    (1.0 - e) * eccentric + e * less_sine(eccentric)
+}
+
+/// x - sin x: by its series where the difference would lose digits.
+fn less_sine(x: f64) -> f64 {
+    if x.abs() > 1.0 {
+        return x - x.sin();
+    }
+    // x³/3! (1 - x²/(4·5) (1 - x²/(6·7) (1 - ...))); eight factors are exact below 1.
+    let square = x * x;
+    let series = (2..10).rev().fold(1.0, |inner, n| {
+        let n = f64::from(2 * n);
+        1.0 - square / (n * (n + 1.0)) * inner
+    });
+    x * square / 6.0 * series
 }

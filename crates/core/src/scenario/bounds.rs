@@ -60,6 +60,8 @@ impl Bound {
     pub const STOP_TIME: Self = Self::above(0.0, 1e9);
     /// Times since the start, s.
     pub const TIME: Self = Self::between(0.0, 1e9);
+    /// Seconds since the inertial and the planet-fixed frame were aligned.
+    pub const SIDEREAL_TIME: Self = Self::between(-1e9, 1e9);
     /// Thrusts, N.
     pub const FORCE: Self = Self::between(-1e12, 1e12);
     /// Specific impulses, s; that of light is 3.1e7.

@@ -155,8 +155,8 @@ pub static COLUMNS: [Column; 33] = [
     ),
     Column {
         name: "utc",
-        description: "The instant in UTC, RFC 3339 to the microsecond; with an epoch. A leap second during the flight is not \
-                      counted; null after the year 9999.",
+        description: "The instant in UTC, RFC 3339 to the microsecond; with an epoch; leap seconds counted. Null after \
+                      the year 9999.",
         needs: Needs::Epoch,
         quantity: Quantity::Utc,
     },

@@ -29,7 +29,8 @@ pub struct ConvertRequest {
     /// The planet.
     #[schema(required = false)]
     pub planet: Planet,
-    /// The instant of the state: an RFC 3339 time. Where `sidereal_time` is absent, it follows from the Earth rotation angle.
+    /// The instant of the state: an RFC 3339 time. On the Earth it gives the angle to the inertial frame,
+    /// where the state gives none; on a custom planet it gives none.
     #[schema(required = false, value_type = String, format = DateTime)]
     pub epoch: Option<Instant>,
     /// The state.
@@ -63,7 +64,7 @@ pub struct ConvertResponse {
     pub case: Option<Value>,
 }
 
-/// What follows from a state.
+/// What follows from a state; its angles are in the unit of the answer.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Derived {
     /// Height above the planet's shape along the radius vector, m.
@@ -74,6 +75,8 @@ pub struct Derived {
     pub periapsis_radius: Option<f64>,
     /// Distance of the apoapsis from the centre, m; null for an unbound orbit, or where the state has no orbital elements.
     pub apoapsis_radius: Option<f64>,
+    /// The mean anomaly, in [0, 2π); null for an unbound orbit, or where the state has no orbital elements.
+    pub mean_anomaly: Option<f64>,
     /// Half the squared inertial speed less the gravitational parameter over the radius, J/kg.
     pub specific_energy: f64,
     /// The time of one revolution, s; null for an unbound orbit, or where the state has no orbital elements.
@@ -87,12 +90,7 @@ impl ConvertRequest {
         let planet = object.object_or("planet", json!({}), Planet::read);
         let epoch = read_epoch(object);
         let has_epoch = object.has("epoch");
-        let state = object.object("state", |object| {
-            if !has_epoch {
-                object.fill("sidereal_time", json!(0));
-            }
-            State::read(object)
-        });
+        let state = object.object("state", |object| State::read(object, has_epoch));
         Some(Self { angle_unit: angle_unit?, echo: echo?, planet: planet?, epoch, state: state? })
     }
 }
@@ -109,9 +107,10 @@ impl ConvertResponse {
         if !shape_faults.is_empty() {
             return Err(shape_faults.iter().map(super::scenario::fault).collect());
         }
-        let (state, sidereal_time) = request.state.at(request.epoch, "/state", unit, &planet)?;
+        let (state, orientation) = request.state.at(request.epoch, "/state", unit, &request.planet)?;
+        let (frame, sidereal) = (orientation.frame, orientation.sidereal);
 
-        let inertial = Inertial::from_planet_fixed(&state, &planet, sidereal_time);
+        let inertial = Inertial::from_planet_fixed_by(&state, &planet, &orientation.to_planet);
         let elements = CoreElements::from_inertial(&inertial, planet.orbital_gravitational_parameter);
         let elements_only = elements.ok().map(|(elements, _)| elements);
         let mut warnings = Vec::new();
@@ -119,27 +118,26 @@ impl ConvertResponse {
             Ok((_, undefined)) => warnings.extend(Warning::of_undefined_elements(undefined)),
             Err(_) => warnings.push(Warning::rectilinear()),
         }
-        if request.epoch.is_some() && request.state.is_inertial() {
-            warnings.push(Warning::frame_of_date());
-        }
+        warnings.extend(Warning::of_frame(&request.state, request.epoch, &request.planet));
         let geodetic = CoreGeodetic::from_planet_fixed(&state, &planet.shape);
         Ok(Self {
             angle_unit: unit,
             planet_relative: PlanetRelative::from_core(
                 &FlightPath::from_planet_fixed(&state).wrapped(),
                 unit,
-                sidereal_time,
+                sidereal,
             ),
-            geodetic: Geodetic::from_core(&geodetic, unit, sidereal_time),
-            ecef: Ecef::from_core(&state, sidereal_time),
-            eci: Eci::from_core(&inertial, sidereal_time),
-            orbital_elements: elements_only.map(|elements| OrbitalElements::from_core(&elements, unit, sidereal_time)),
+            geodetic: Geodetic::from_core(&geodetic, unit, sidereal),
+            ecef: Ecef::from_core(&state, sidereal),
+            eci: Eci::from_core(&inertial, frame, orientation.given()),
+            orbital_elements: elements_only
+                .map(|elements| OrbitalElements::from_core(&elements, unit, frame, orientation.given())),
             inertial_flight_path: InertialFlightPath::from_core(
                 &CoreInertialFlightPath::from_planet_fixed(&state, &planet),
                 unit,
-                sidereal_time,
+                sidereal,
             ),
-            derived: Derived::of(planet.shape.altitude(&state.position), &inertial, elements_only, &planet),
+            derived: Derived::of(planet.shape.altitude(&state.position), &inertial, elements_only, &planet, unit),
             warnings,
             case: request.echo.then_some(tree),
         })
@@ -147,13 +145,21 @@ impl ConvertResponse {
 }
 
 impl Derived {
-    fn of(altitude: f64, state: &Inertial, elements: Option<CoreElements>, planet: &CorePlanet) -> Self {
+    fn of(
+        altitude: f64,
+        state: &Inertial,
+        elements: Option<CoreElements>,
+        planet: &CorePlanet,
+        unit: AngleUnit,
+    ) -> Self {
+        let mean_anomaly = elements.and_then(|elements| elements.mean_anomaly());
         let gravitational_parameter = planet.orbital_gravitational_parameter;
         Self {
             altitude,
             semi_latus_rectum: elements.map(|elements| elements.semi_latus_rectum()),
             periapsis_radius: elements.map(|elements| elements.periapsis_radius()),
             apoapsis_radius: elements.and_then(|elements| elements.apoapsis_radius()),
+            mean_anomaly: mean_anomaly.map(|anomaly| unit.turn_from_radians(anomaly)),
             specific_energy: state.velocity.norm_squared() / 2.0 - gravitational_parameter / state.position.norm(),
             period: elements.and_then(|elements| elements.period(gravitational_parameter)),
         }

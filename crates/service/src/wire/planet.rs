@@ -186,6 +186,11 @@ impl Planet {
         })
     }
 
+    /// Whether it is an Earth, whose rotation angle and frames follow from the date.
+    pub fn is_earth(&self) -> bool {
+        self.model != PlanetModel::Custom
+    }
+
     fn read_custom(object: &mut Object) -> Option<CorePlanet> {
         let gravitational_parameter = object.number("gravitational_parameter", Bound::GRAVITATIONAL_PARAMETER);
         let equatorial_radius = object.number("equatorial_radius", Bound::PLANET_RADIUS);

@@ -40,7 +40,8 @@ pub struct SimulateRequest {
     /// Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV or on a map.
     #[schema(required = false, default = false)]
     pub verify: bool,
-    /// The instant t = 0: an RFC 3339 time. Where `sidereal_time` is absent, it follows from the Earth rotation angle.
+    /// The instant t = 0: an RFC 3339 time. On the Earth it gives the angle to the inertial frame, where
+    /// the state gives none; on a custom planet it dates the flight, and no more.
     #[schema(required = false, value_type = String, format = DateTime)]
     pub epoch: Option<Instant>,
     /// Where it flies.
@@ -214,12 +215,7 @@ impl SimulateRequest {
         let heating = object.optional_object("heating", Heating::read);
         let events = object.optional_objects("events", MOST_EVENTS, Event::read);
         let has_epoch = object.has("epoch");
-        let initial_state = object.object("initial_state", |object| {
-            if !has_epoch {
-                object.fill("sidereal_time", json!(0));
-            }
-            State::read(object)
-        });
+        let initial_state = object.object("initial_state", |object| State::read(object, has_epoch));
         let stop = object.object_or("stop", json!({}), Stop::read);
         let output = object.object_or("output", json!({"samples_per_step": 4}), Output::read);
         let solver = object.object_or("solver", json!({}), Solver::read);
@@ -279,7 +275,7 @@ impl SimulateRequest {
     pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
         let planet = self.planet.core;
         let stop = self.stop.to_core(self.angle_unit, &self.events);
-        let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &planet);
+        let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
         let mut across = Event::area_faults(&self.events, &self.vehicle);
         across.extend(self.name_faults());
         let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();

@@ -6,7 +6,10 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::AngleUnit;
+use super::epoch::Instant;
+use super::planet::Planet;
 use super::scenario::SimulateRequest;
+use super::state::{Frame, State};
 use super::trajectory::Extras;
 use super::vehicle::Aerodynamics;
 
@@ -40,9 +43,7 @@ impl Warning {
                 "control.angle_of_attack changes nothing: only the coefficients of an alpha_mach_table depend on it";
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
-        if request.epoch.is_some() && request.initial_state.is_inertial() {
-            warnings.push(Self::frame_of_date());
-        }
+        warnings.extend(Self::of_frame(&request.initial_state, request.epoch, &request.planet));
         if let Some(error) = extras.unverified {
             let detail = format!("at a hundredth of its tolerance the flight cannot be finished: {error}");
             warnings.push(Self::new("not_verified", &detail));
@@ -148,11 +149,30 @@ impl Warning {
         Self::new("rectilinear_motion", detail)
     }
 
-    /// The inertial frame is not J2000.
-    pub fn frame_of_date() -> Self {
-        let detail = "with an epoch, the inertial frame is the equator and origin of date; vectors in J2000 or GCRF are \
-                      tilted against it by 0.145 degrees in 2026, up to 16 km on the ground";
-        Self::new("inertial_frame_of_date", detail)
+    /// In which frame an inertial state was taken, on the Earth at an epoch.
+    pub fn of_frame(state: &State, epoch: Option<Instant>, planet: &Planet) -> Option<Self> {
+        let frame = state.frame().filter(|_| epoch.is_some() && planet.is_earth())?;
+        Some(match frame {
+            Frame::Date => {
+                let turned = if state.gives_sidereal() {
+                    "the Earth's equator of date, turned by the sidereal time or angle of the state"
+                } else {
+                    "the Earth's equator and celestial intermediate origin of date"
+                };
+                let detail = format!(
+                    "frame date was taken: {turned}; frame selects teme for vectors of SGP4 and gcrf for J2000, which in 2026 lie up to \
+                     38 km and 16 km from that origin on the ground"
+                );
+                Self::new("inertial_frame_of_date", &detail)
+            }
+            Frame::Teme | Frame::Gcrf => {
+                let detail = format!(
+                    "frame {} was taken with polar motion and UT1-UTC left out: at most 18 m and 0.9 s, which is 420 m on the equator",
+                    frame.name()
+                );
+                Self::new("earth_orientation_neglected", &detail)
+            }
+        })
     }
 }
 

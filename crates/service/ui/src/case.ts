@@ -55,6 +55,8 @@ const ANGLES = new Set([
   'raan',
   'argument_of_periapsis',
   'true_anomaly',
+  'mean_anomaly',
+  'sidereal_angle',
   'bank_angle',
   'angle_of_attack',
 ]);

@@ -6,7 +6,7 @@ use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::{sidereal_time, within};
+use super::{Sidereal, within};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
 use crate::wire::reader::{Fault, Object};
@@ -35,20 +35,25 @@ pub struct Geodetic {
     /// Clockwise from north, within ±2π (±360°); answers give [0, 2π).
     #[schema(minimum = -360, maximum = 360)]
     pub azimuth: f64,
-    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
+    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned, within ±1e9. Default 0, or from the
+    /// `epoch`. At most one of `sidereal_time` and `sidereal_angle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sidereal_time: Option<SiderealTime>,
+    /// The same as an angle: from the inertial frame to the planet-fixed one, eastwards, within ±2π (±360°).
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sidereal_angle: Option<f64>,
 }
 
 impl Geodetic {
-    pub(super) fn read(object: &mut Object) -> Option<Self> {
+    pub(super) fn read(object: &mut Object, has_epoch: bool) -> Option<Self> {
         let geodetic_altitude = object.number("geodetic_altitude", Bound::DISTANCE);
         let longitude = object.angle("longitude", Bound::TURN);
         let geodetic_latitude = object.angle("geodetic_latitude", Bound::QUARTER_TURN);
         let speed = object.number("speed", Bound::SPEED);
         let flight_path_angle = object.angle("flight_path_angle", Bound::QUARTER_TURN);
         let azimuth = object.angle("azimuth", Bound::TURN);
-        let sidereal_time = sidereal_time(object);
+        let sidereal = Sidereal::read(object, has_epoch);
         Some(Self {
             kind: "geodetic",
             geodetic_altitude: geodetic_altitude?,
@@ -57,7 +62,8 @@ impl Geodetic {
             speed: speed?,
             flight_path_angle: flight_path_angle?,
             azimuth: azimuth?,
-            sidereal_time,
+            sidereal_time: sidereal?.time,
+            sidereal_angle: sidereal?.angle,
         })
     }
 
@@ -83,7 +89,7 @@ impl Geodetic {
     }
 
     /// The state in the given unit of angles.
-    pub fn from_core(state: &coordinates::Geodetic, unit: AngleUnit, sidereal_time: f64) -> Self {
+    pub fn from_core(state: &coordinates::Geodetic, unit: AngleUnit, sidereal: Sidereal) -> Self {
         Self {
             kind: "geodetic",
             geodetic_altitude: state.geodetic_altitude,
@@ -92,7 +98,8 @@ impl Geodetic {
             speed: within(Bound::SPEED, state.speed),
             flight_path_angle: unit.from_radians(state.flight_path_angle),
             azimuth: unit.turn_from_radians(state.azimuth),
-            sidereal_time: Some(SiderealTime(sidereal_time)),
+            sidereal_time: sidereal.time,
+            sidereal_angle: sidereal.angle,
         }
     }
 }

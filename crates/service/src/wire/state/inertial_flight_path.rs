@@ -8,7 +8,7 @@ use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::{centre_faults, radius_of, sidereal_time, within};
+use super::{Sidereal, centre_faults, radius_of, within};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
 use crate::wire::reader::{Fault, Object};
@@ -49,13 +49,18 @@ pub struct InertialFlightPath {
     #[schema(minimum = -360, maximum = 360)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inertial_azimuth: Option<f64>,
-    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
+    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned, within ±1e9. Default 0, or from the
+    /// `epoch`. At most one of `sidereal_time` and `sidereal_angle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sidereal_time: Option<SiderealTime>,
+    /// The same as an angle: from the inertial frame to the planet-fixed one, eastwards, within ±2π (±360°).
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sidereal_angle: Option<f64>,
 }
 
 impl InertialFlightPath {
-    pub(super) fn read(object: &mut Object) -> Option<Self> {
+    pub(super) fn read(object: &mut Object, has_epoch: bool) -> Option<Self> {
         let radius = object.optional_number("radius", Bound::RADIUS);
         let altitude = object.optional_number("altitude", Bound::DISTANCE);
         let place = object.exactly_one(&["radius", "altitude"]);
@@ -66,7 +71,7 @@ impl InertialFlightPath {
         let inertial_heading = object.optional_angle("inertial_heading", Bound::TURN);
         let inertial_azimuth = object.optional_angle("inertial_azimuth", Bound::TURN);
         let direction = object.exactly_one(&["inertial_heading", "inertial_azimuth"]);
-        let sidereal_time = sidereal_time(object);
+        let sidereal = Sidereal::read(object, has_epoch);
         place?;
         direction?;
         Some(Self {
@@ -79,7 +84,8 @@ impl InertialFlightPath {
             inertial_flight_path_angle: inertial_flight_path_angle?,
             inertial_heading,
             inertial_azimuth,
-            sidereal_time,
+            sidereal_time: sidereal?.time,
+            sidereal_angle: sidereal?.angle,
         })
     }
 
@@ -103,7 +109,7 @@ impl InertialFlightPath {
     }
 
     /// The state in the given unit of angles.
-    pub fn from_core(state: &coordinates::InertialFlightPath, unit: AngleUnit, sidereal_time: f64) -> Self {
+    pub fn from_core(state: &coordinates::InertialFlightPath, unit: AngleUnit, sidereal: Sidereal) -> Self {
         Self {
             kind: "inertial_flight_path",
             radius: Some(within(Bound::RADIUS, state.radius)),
@@ -114,7 +120,8 @@ impl InertialFlightPath {
             inertial_flight_path_angle: unit.from_radians(state.inertial_flight_path_angle),
             inertial_heading: Some(unit.from_radians(state.inertial_heading)),
             inertial_azimuth: None,
-            sidereal_time: Some(SiderealTime(sidereal_time)),
+            sidereal_time: sidereal.time,
+            sidereal_angle: sidereal.angle,
         }
     }
 }

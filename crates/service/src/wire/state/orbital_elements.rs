@@ -5,17 +5,21 @@ use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::sidereal_time;
+use super::{Frame, Sidereal};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
 use crate::wire::reader::{Fault, Object};
 
-/// Classical orbital elements in the inertial frame.
+/// Classical orbital elements in the inertial frame `frame`.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct OrbitalElements {
     /// The kind of state.
     #[serde(rename = "type")]
     pub kind: &'static str,
+    /// The inertial frame. `teme` and `gcrf` need an `epoch` from 1900 to 2100 and an Earth, and no sidereal time or angle; they are good
+    /// to 10 m at the surface, but for polar motion (18 m at most) and UT1-UTC (0.9 s at most, 420 m), which are neglected.
+    #[schema(required = false, default = "date")]
+    pub frame: Frame,
     /// m; positive below eccentricity 1, negative above. Exactly one of `semi_major_axis` and `semi_latus_rectum`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub semi_major_axis: Option<f64>,
@@ -35,16 +39,27 @@ pub struct OrbitalElements {
     /// From the ascending node to the periapsis, within ±2π (±360°); answers give [0, 2π).
     #[schema(minimum = -360, maximum = 360)]
     pub argument_of_periapsis: f64,
-    /// From the periapsis to the vehicle, within ±2π (±360°); answers give [0, 2π).
+    /// From the periapsis to the vehicle, within ±2π (±360°); answers give [0, 2π). Exactly one of `true_anomaly` and `mean_anomaly`.
     #[schema(minimum = -360, maximum = 360)]
-    pub true_anomaly: f64,
-    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub true_anomaly: Option<f64>,
+    /// The time since the periapsis as a part of that of a revolution, as an angle within ±2π (±360°); of bound orbits (eccentricity
+    /// below 1). Exactly one of `true_anomaly` and `mean_anomaly`.
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_anomaly: Option<f64>,
+    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned, within ±1e9. Default 0, or from the
+    /// `epoch`. At most one of `sidereal_time` and `sidereal_angle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sidereal_time: Option<SiderealTime>,
+    /// The same as an angle: from the inertial frame to the planet-fixed one, eastwards, within ±2π (±360°).
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sidereal_angle: Option<f64>,
 }
 
 impl OrbitalElements {
-    pub(super) fn read(object: &mut Object) -> Option<Self> {
+    pub(super) fn read(object: &mut Object, has_epoch: bool) -> Option<Self> {
         let semi_major_axis = object.optional_number("semi_major_axis", Bound::FINITE);
         let semi_latus_rectum = object.optional_number("semi_latus_rectum", Bound::POSITIVE);
         let size = object.exactly_one(&["semi_major_axis", "semi_latus_rectum"]);
@@ -52,19 +67,25 @@ impl OrbitalElements {
         let inclination = object.angle("inclination", Bound::HALF_TURN);
         let raan = object.angle("raan", Bound::TURN);
         let argument_of_periapsis = object.angle("argument_of_periapsis", Bound::TURN);
-        let true_anomaly = object.angle("true_anomaly", Bound::TURN);
-        let sidereal_time = sidereal_time(object);
+        let true_anomaly = object.optional_angle("true_anomaly", Bound::TURN);
+        let mean_anomaly = object.optional_angle("mean_anomaly", Bound::TURN);
+        let anomaly = object.exactly_one(&["true_anomaly", "mean_anomaly"]);
+        let (frame, sidereal) = Frame::read(object, has_epoch);
         size?;
+        anomaly?;
         Some(Self {
             kind: "orbital_elements",
+            frame: frame?,
             semi_major_axis,
             semi_latus_rectum,
             eccentricity: eccentricity?,
             inclination: inclination?,
             raan: raan?,
             argument_of_periapsis: argument_of_periapsis?,
-            true_anomaly: true_anomaly?,
-            sidereal_time,
+            true_anomaly,
+            mean_anomaly,
+            sidereal_time: sidereal?.time,
+            sidereal_angle: sidereal?.angle,
         })
     }
 
@@ -84,11 +105,16 @@ impl OrbitalElements {
             }
             _ => {}
         }
-        let reach = 1.0 + e * unit.to_radians(self.true_anomaly).cos();
-        if reach <= 0.0 {
+        let reach = self.true_anomaly.map(|anomaly| 1.0 + e * unit.to_radians(anomaly).cos());
+        if let Some(reach) = reach.filter(|reach| *reach <= 0.0) {
             let detail =
                 format!("lies beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach}");
             faults.push(Fault::new(format!("{pointer}/true_anomaly"), detail));
+        }
+        if self.mean_anomaly.is_some() && e >= 1.0 {
+            let detail =
+                format!("needs a bound orbit, of an eccentricity below 1, got {e}; give true_anomaly in its place");
+            faults.push(Fault::new(format!("{pointer}/mean_anomaly"), detail));
         }
         faults
     }
@@ -98,32 +124,43 @@ impl OrbitalElements {
             (Some(p), _) => OrbitShape::SemiLatusRectum(p),
             (None, a) => OrbitShape::SemiMajorAxis(a.unwrap_or(f64::NAN)),
         };
+        let true_anomaly = self.true_anomaly.map(|anomaly| unit.to_radians(anomaly));
+        let from_mean =
+            self.mean_anomaly.map(|mean| coordinates::true_anomaly(unit.to_radians(mean), self.eccentricity));
         coordinates::OrbitalElements {
             shape,
             eccentricity: self.eccentricity,
             inclination: unit.to_radians(self.inclination),
             raan: unit.to_radians(self.raan),
             argument_of_periapsis: unit.to_radians(self.argument_of_periapsis),
-            true_anomaly: unit.to_radians(self.true_anomaly),
+            true_anomaly: true_anomaly.or(from_mean).unwrap_or(f64::NAN),
         }
     }
 
     /// The elements in the given unit of angles.
-    pub fn from_core(elements: &coordinates::OrbitalElements, unit: AngleUnit, sidereal_time: f64) -> Self {
+    pub fn from_core(
+        elements: &coordinates::OrbitalElements,
+        unit: AngleUnit,
+        frame: Frame,
+        sidereal: Sidereal,
+    ) -> Self {
         let (semi_major_axis, semi_latus_rectum) = match elements.shape {
             OrbitShape::SemiMajorAxis(a) => (Some(a), None),
             OrbitShape::SemiLatusRectum(p) => (None, Some(p)),
         };
         Self {
             kind: "orbital_elements",
+            frame,
             semi_major_axis,
             semi_latus_rectum,
             eccentricity: elements.eccentricity,
             inclination: unit.from_radians(elements.inclination),
             raan: unit.turn_from_radians(elements.raan),
             argument_of_periapsis: unit.turn_from_radians(elements.argument_of_periapsis),
-            true_anomaly: unit.turn_from_radians(elements.true_anomaly),
-            sidereal_time: Some(SiderealTime(sidereal_time)),
+            true_anomaly: Some(unit.turn_from_radians(elements.true_anomaly)),
+            mean_anomaly: None,
+            sidereal_time: sidereal.time,
+            sidereal_angle: sidereal.angle,
         }
     }
 }

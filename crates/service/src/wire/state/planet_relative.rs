@@ -1,12 +1,14 @@
 //! The type `planet_relative`.
 
+use std::f64::consts::FRAC_PI_2;
+
 use reentry::coordinates::FlightPath;
 use reentry::planet::Planet;
 use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::{centre_faults, radius_of, sidereal_time, within};
+use super::{Sidereal, centre_faults, radius_of, within};
 use crate::wire::AngleUnit;
 use crate::wire::epoch::SiderealTime;
 use crate::wire::reader::{Fault, Object};
@@ -37,16 +39,26 @@ pub struct PlanetRelative {
     /// Of the relative velocity above the local horizontal (the plane normal to the radius), within ±π/2 (±90°).
     #[schema(minimum = -90, maximum = 90)]
     pub flight_path_angle: f64,
-    /// From east (0) towards north (π/2), within ±2π (±360°).
+    /// From east (0) towards north (π/2), within ±2π (±360°). Exactly one of `heading` and `azimuth`.
     #[schema(minimum = -360, maximum = 360)]
-    pub heading: f64,
-    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned. Default 0, or from the `epoch`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading: Option<f64>,
+    /// Clockwise from north, within ±2π (±360°). Exactly one of `heading` and `azimuth`.
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth: Option<f64>,
+    /// When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned, within ±1e9. Default 0, or from the
+    /// `epoch`. At most one of `sidereal_time` and `sidereal_angle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sidereal_time: Option<SiderealTime>,
+    /// The same as an angle: from the inertial frame to the planet-fixed one, eastwards, within ±2π (±360°).
+    #[schema(minimum = -360, maximum = 360)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sidereal_angle: Option<f64>,
 }
 
 impl PlanetRelative {
-    pub(super) fn read(object: &mut Object) -> Option<Self> {
+    pub(super) fn read(object: &mut Object, has_epoch: bool) -> Option<Self> {
         let radius = object.optional_number("radius", Bound::RADIUS);
         let altitude = object.optional_number("altitude", Bound::DISTANCE);
         let place = object.exactly_one(&["radius", "altitude"]);
@@ -54,9 +66,12 @@ impl PlanetRelative {
         let geocentric_latitude = object.angle("geocentric_latitude", Bound::QUARTER_TURN);
         let speed = object.number("speed", Bound::SPEED);
         let flight_path_angle = object.angle("flight_path_angle", Bound::QUARTER_TURN);
-        let heading = object.angle("heading", Bound::TURN);
-        let sidereal_time = sidereal_time(object);
+        let heading = object.optional_angle("heading", Bound::TURN);
+        let azimuth = object.optional_angle("azimuth", Bound::TURN);
+        let direction = object.exactly_one(&["heading", "azimuth"]);
+        let sidereal = Sidereal::read(object, has_epoch);
         place?;
+        direction?;
         Some(Self {
             kind: "planet_relative",
             radius,
@@ -65,8 +80,10 @@ impl PlanetRelative {
             geocentric_latitude: geocentric_latitude?,
             speed: speed?,
             flight_path_angle: flight_path_angle?,
-            heading: heading?,
-            sidereal_time,
+            heading,
+            azimuth,
+            sidereal_time: sidereal?.time,
+            sidereal_angle: sidereal?.angle,
         })
     }
 
@@ -77,18 +94,20 @@ impl PlanetRelative {
 
     pub(super) fn to_core(&self, unit: AngleUnit, planet: &Planet) -> FlightPath<f64> {
         let geocentric_latitude = unit.to_radians(self.geocentric_latitude);
+        let heading = self.heading.map(|heading| unit.to_radians(heading));
+        let from_azimuth = self.azimuth.map(|azimuth| FRAC_PI_2 - unit.to_radians(azimuth));
         FlightPath {
             radius: radius_of(self.radius, self.altitude, geocentric_latitude, planet),
             longitude: unit.to_radians(self.longitude),
             geocentric_latitude,
             speed: self.speed,
             flight_path_angle: unit.to_radians(self.flight_path_angle),
-            heading: unit.to_radians(self.heading),
+            heading: heading.or(from_azimuth).unwrap_or(f64::NAN),
         }
     }
 
     /// The state in the given unit of angles.
-    pub fn from_core(state: &FlightPath<f64>, unit: AngleUnit, sidereal_time: f64) -> Self {
+    pub fn from_core(state: &FlightPath<f64>, unit: AngleUnit, sidereal: Sidereal) -> Self {
         Self {
             kind: "planet_relative",
             radius: Some(within(Bound::RADIUS, state.radius)),
@@ -97,8 +116,10 @@ impl PlanetRelative {
             geocentric_latitude: unit.from_radians(state.geocentric_latitude),
             speed: within(Bound::SPEED, state.speed),
             flight_path_angle: unit.from_radians(state.flight_path_angle),
-            heading: unit.from_radians(state.heading),
-            sidereal_time: Some(SiderealTime(sidereal_time)),
+            heading: Some(unit.from_radians(state.heading)),
+            azimuth: None,
+            sidereal_time: sidereal.time,
+            sidereal_angle: sidereal.angle,
         }
     }
 }

@@ -46,7 +46,16 @@ const n = (label: string, unit?: string, choice?: string): Field => ({
 });
 const angle = (label: string, choice?: string): Field => ({ kind: 'number', label, isAngle: true, ...(choice ? { choice } : {}) });
 const column = (table: string, label: string, unit?: string): Field => ({ kind: 'column', label, table, ...(unit ? { unit } : {}) });
-const siderealTime: Field = { kind: 'text', label: 'Sidereal time', hint: 's or HH:MM:SS' };
+/** Of which at most one is given. */
+const SIDEREAL = {
+  sidereal_time: { kind: 'text', label: 'Sidereal time', hint: 's or HH:MM:SS', choice: 'sidereal' },
+  sidereal_angle: angle('Sidereal angle', 'sidereal'),
+} satisfies Fields;
+const FRAME: Field = {
+  kind: 'words',
+  label: 'Inertial frame',
+  words: { date: 'of date', teme: 'TEME (SGP4)', gcrf: 'GCRF (J2000)' } satisfies Record<Schemas['Frame'], string>,
+};
 
 export const STATES = {
   planet_relative: {
@@ -59,8 +68,9 @@ export const STATES = {
       geocentric_latitude: angle('Latitude, geocentric'),
       speed: n('Speed', 'm/s'),
       flight_path_angle: angle('Flight-path angle'),
-      heading: angle('Heading, from east to north'),
-      sidereal_time: siderealTime,
+      heading: angle('Heading, from east to north', 'direction'),
+      azimuth: angle('Azimuth, clockwise from north', 'direction'),
+      ...SIDEREAL,
     } satisfies Of<Schemas['PlanetRelative']>,
   },
   geodetic: {
@@ -73,7 +83,7 @@ export const STATES = {
       speed: n('Speed', 'm/s'),
       flight_path_angle: angle('Flight-path angle'),
       azimuth: angle('Azimuth, clockwise from north'),
-      sidereal_time: siderealTime,
+      ...SIDEREAL,
     } satisfies Of<Schemas['Geodetic']>,
   },
   inertial_flight_path: {
@@ -88,7 +98,7 @@ export const STATES = {
       inertial_flight_path_angle: angle('Inertial flight-path angle'),
       inertial_azimuth: angle('Inertial azimuth', 'direction'),
       inertial_heading: angle('Inertial heading', 'direction'),
-      sidereal_time: siderealTime,
+      ...SIDEREAL,
     } satisfies Of<Schemas['InertialFlightPath']>,
   },
   ecef: {
@@ -97,30 +107,33 @@ export const STATES = {
     fields: {
       position: { kind: 'vector', label: 'Position', unit: 'm' },
       velocity: { kind: 'vector', label: 'Velocity', unit: 'm/s' },
-      sidereal_time: siderealTime,
+      ...SIDEREAL,
     } satisfies Of<Schemas['Ecef']>,
   },
   eci: {
     label: 'Inertial vectors (ECI)',
     schema: 'Eci',
     fields: {
+      frame: FRAME,
       position: { kind: 'vector', label: 'Position', unit: 'm' },
       velocity: { kind: 'vector', label: 'Velocity', unit: 'm/s' },
-      sidereal_time: siderealTime,
+      ...SIDEREAL,
     } satisfies Of<Schemas['Eci']>,
   },
   orbital_elements: {
     label: 'Orbital elements',
     schema: 'OrbitalElements',
     fields: {
+      frame: FRAME,
       semi_major_axis: n('Semi-major axis', 'm', 'size'),
       semi_latus_rectum: n('Semi-latus rectum', 'm', 'size'),
       eccentricity: n('Eccentricity'),
       inclination: angle('Inclination'),
       raan: angle('Ascending node (RAAN)'),
       argument_of_periapsis: angle('Argument of periapsis'),
-      true_anomaly: angle('True anomaly'),
-      sidereal_time: siderealTime,
+      true_anomaly: angle('True anomaly', 'anomaly'),
+      mean_anomaly: angle('Mean anomaly', 'anomaly'),
+      ...SIDEREAL,
     } satisfies Of<Schemas['OrbitalElements']>,
   },
 } satisfies Record<Schemas['State']['type'], Kind>;

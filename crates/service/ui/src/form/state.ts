@@ -27,7 +27,7 @@ async function converted(): Promise<Schemas['ConvertResponse'] | null> {
   return convert({ angle_unit, planet, epoch, state: initial_state }).catch(() => null);
 }
 
-/** With the altitude where the state had no radius, and without a sidereal time where it had none: it still follows from the epoch. */
+/** With the altitude where the state had no radius, and without the sidereal time where it had none: it still follows from the epoch. */
 function likeBefore(state: State, before: State, answer: Schemas['ConvertResponse'] | null): State {
   const { sidereal_time, ...others } = state as State & { radius?: number };
   const timed = 'sidereal_time' in before ? { sidereal_time } : {};
