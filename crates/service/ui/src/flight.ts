@@ -72,8 +72,8 @@ export function flightOf(answer: Answer): Flight {
 
 /** How a flight ended, in a few words. */
 export function endOf({ termination, final_state }: Answer): string {
-  const end = ENDS[termination];
-  return end === ENDS.stop_altitude ? `${end} at ${Number((final_state.altitude / 1e3).toPrecision(4))} km` : end;
+  if (termination !== 'stop_altitude') return ENDS[termination];
+  return `${ENDS.stop_altitude} at ${Number((final_state.altitude / 1e3).toPrecision(4))} km`;
 }
 
 function marksOf(answer: Answer): Mark[] {

@@ -80,6 +80,14 @@ it('every example downloads in every format', async () => {
   await page.close();
 });
 
+it('a flight that stops above the ground is nowhere said to hit it', async () => {
+  const { page } = await on({ ...example('target_2'), stop: { altitude: 8000 } });
+  await page.locator('.card', { hasText: 'Stopped at 8 km' }).waitFor();
+  await page.locator('.places', { hasText: 'stopped at 8 km' }).waitFor();
+  expect(await page.getByText(/impact/i).count()).toBe(0);
+  await page.close();
+});
+
 it('a case says what to know of it: the flown capsules come down in Utah', async () => {
   const { page } = await open(browser, service.address);
   for (const [title, south] of [
