@@ -2,7 +2,13 @@ import { readFileSync } from 'node:fs';
 import type { Plugin } from 'vite';
 
 const ROOT = new URL('../../../../', import.meta.url);
-const OWN = ['lifting_capsule', 'deorbit'];
+/** Cases of the service's own, with what to know of them. */
+const OWN = {
+  lifting_capsule:
+    'A made-up capsule. Its angle of attack gives it lift, which the bank turns to the side and back by a schedule. It has no parachute and meets the ground at 90 m/s; the next example has parachutes.',
+  deorbit:
+    'A made-up capsule of the size of a Soyuz: a braking burn half a revolution before the landing, separation, parachutes. They open at once here, which makes their loads greater than those of real ones.',
+};
 const THESIS = ['target_1', 'target_2', 'impulse', 'shallow_glide', 'steep_glide', 'steep_ballistic', 'medium_glide_supercircular'];
 
 type Json = null | boolean | number | string | Json[] | { [name: string]: Json };
@@ -13,6 +19,8 @@ interface Example {
   group: string;
   title: string;
   case: Json;
+  /** Its source, what is assumed, what to look at. */
+  notes: string;
 }
 
 /**
@@ -34,11 +42,10 @@ function read(path: string): any {
 }
 
 function own(): Example[] {
-  return OWN.map((file) => read(`openapi/examples/${file}.json`)).map((request) => ({
-    group: 'Missions',
-    title: request.name,
-    case: request,
-  }));
+  return Object.entries(OWN).map(([file, notes]) => {
+    const request = read(`openapi/examples/${file}.json`);
+    return { group: 'Missions', title: request.name, case: request, notes };
+  });
 }
 
 /** The seven tables of the thesis, with the constants of its listing. */
@@ -47,6 +54,7 @@ function thesis(): Example[] {
     group: 'Thesis (Jameson 2006)',
     title: title.replace('Jameson 2006, ', ''),
     case: { ...request, name: title.replace(/^Jameson 2006, Table \d: /, ''), planet: { model: 'earth_jameson_listing', shape } },
+    notes: `${/Table \d/.exec(title)} of R. E. Jameson's thesis (AFIT/GSS/ENY/06-M08, 2006), with the planet of its listing and its exponential atmosphere, which is 26 % denser at the ground than standard air. Its angles are in radians.`,
   }));
 }
 
@@ -56,7 +64,8 @@ function flown(): Example[] {
   return flights.map((flight: Tree) => {
     const like = flights.find((other: Tree) => other.name === flight.like);
     const { output: _, ...request } = [like, flight].reduce((merged, part) => merge(merged, part?.request ?? {}), defaults) as Tree;
-    return { group: 'Flown', title: flight.name as string, case: { name: flight.name, ...request } };
+    const notes = `${flight.note} Source: ${flight.source}.`;
+    return { group: 'Flown', title: flight.name as string, case: { name: flight.name, ...request }, notes };
   });
 }
 
@@ -64,6 +73,7 @@ function flown(): Example[] {
 function checks(): Example[] {
   const file = read('tests/cases/nesc/cases.json');
   const { source: _, ...constants } = file.constants.nasa;
+  const notes = `Source: ${file.source}.`;
   // By number: an object has `10` before `01`.
   const cases = Object.entries(file.cases as Record<string, Tree>).sort();
   return cases.map(([number, check]) => {
@@ -89,6 +99,7 @@ function checks(): Example[] {
           azimuth: check.azimuth as Json,
         },
       },
+      notes,
     };
   });
 }

@@ -15,7 +15,11 @@ export type { Schemas };
 
 /** An answer of the service that is none: its problem document. */
 export class ProblemError extends Error {
-  constructor(readonly problem: Problem) {
+  constructor(
+    readonly problem: Problem,
+    /** After how many seconds to ask again, where the service says so. */
+    readonly retryAfter: number | null = null,
+  ) {
     super(problem.detail);
   }
 }
@@ -56,7 +60,10 @@ async function send(path: string, body: unknown, signal?: AbortSignal): Promise<
     body: JSON.stringify(body),
     signal: signal ?? null,
   });
-  if (!response.ok) throw new ProblemError(await problemOf(response));
+  if (!response.ok) {
+    const seconds = Number.parseFloat(response.headers.get('retry-after') ?? '');
+    throw new ProblemError(await problemOf(response), Number.isFinite(seconds) ? Math.max(seconds, 0) : null);
+  }
   return response;
 }
 

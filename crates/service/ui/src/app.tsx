@@ -3,13 +3,15 @@ import type { ComponentType } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import { address, type Case } from './api';
 import { Cards, Computing, Problems, Sensitivities, Warnings } from './cards';
-import { inUnit } from './case';
+import { whyNoCase } from './case';
 import { Compare, Pin, Theories } from './compare';
-import { opened, start, take } from './fly';
+import { open, opened, start } from './fly';
 import { Form } from './form/form';
+import { future, past, recent, redo, undo } from './history';
+import { remember, remembered } from './memory';
 import { Plots } from './plots/plots';
 import { Sliders } from './sliders';
-import { angleUnit, current, draft, isBusy, notice } from './store';
+import { angleUnit, current, draft, isBusy, notice, waiting } from './store';
 import { Take } from './take';
 
 const NARROW = '(max-width: 899px)';
@@ -61,7 +63,7 @@ export function App() {
 function begin(): () => void {
   start();
   void opened().then(async (isOpen) => {
-    if (!isOpen) take(structuredClone((await examples())[0]?.case as Case));
+    if (!isOpen) open(structuredClone((await examples())[0]?.case as Case));
   });
   const over = (event: DragEvent) => event.preventDefault();
   const drop = (event: DragEvent) => {
@@ -79,17 +81,58 @@ function begin(): () => void {
 
 const examples = async () => (await import('virtual:examples')).default;
 
-/** The case of a file: a case, or an answer that repeats its own. */
+/** The examples, once they are loaded. */
+function useExamples() {
+  const list = useSignal<Awaited<ReturnType<typeof examples>>>([]);
+  useEffect(() => {
+    void examples().then((found) => {
+      list.value = found;
+    });
+  }, []);
+  return list;
+}
+
+/** What to know of the case, where it is an example or was made of one: it still has the name. */
+function Notes({ name }: { name: string | undefined }) {
+  const notes = useExamples().value.find((example) => example.case.name === name)?.notes;
+  if (!notes) return null;
+  return (
+    <details class="notes quiet">
+      <summary>{notes}</summary>
+    </details>
+  );
+}
+
+/** Opens the case of a file: a case, or an answer that repeats its own. A file that has none changes nothing. */
 async function openFile(file: File): Promise<void> {
   try {
     const tree = JSON.parse(await file.text());
-    if (typeof tree !== 'object' || tree === null || Array.isArray(tree)) throw new Error('it is not a JSON object');
-    take(tree.case ?? tree);
+    const found = tree?.case ?? tree;
+    const why = whyNoCase(found);
+    if (why) throw new Error(why);
+    open(found);
     notice.value = null;
   } catch (error) {
-    notice.value = `${file.name} cannot be opened: ${error instanceof Error ? error.message : error}.`;
+    notice.value = `${file.name} is not a case: ${error instanceof Error ? error.message : error}. The case on the page stays as it was.`;
   }
 }
+
+/** What a new case begins with: a capsule from a low orbit, in standard air. */
+const NEW: Case = {
+  name: 'New case',
+  angle_unit: 'deg',
+  atmosphere: { type: 'us76' },
+  vehicle: { mass: 5500, reference_area: 12, aerodynamics: { type: 'constant', drag_coefficient: 1.3, lift_coefficient: 0.3 } },
+  initial_state: {
+    type: 'geodetic',
+    geodetic_altitude: 120000,
+    longitude: 0,
+    geodetic_latitude: 0,
+    speed: 7400,
+    flight_path_angle: -2,
+    azimuth: 90,
+  },
+};
 
 function Notice() {
   if (!notice.value) return null;
@@ -115,7 +158,16 @@ function Header() {
     <header class="top">
       <h1>reentry</h1>
       <p class="quiet tagline">Flights back through the atmosphere</p>
+      <output class="quiet waiting" aria-live="polite">
+        {waiting.value}
+      </output>
       <div class="buttons">
+        <button type="button" aria-label="Undo" title="Undo (Ctrl+Z)" disabled={past.value.length === 0} onClick={undo}>
+          ↶
+        </button>
+        <button type="button" aria-label="Redo" title="Redo (Ctrl+Shift+Z)" disabled={future.value.length === 0} onClick={redo}>
+          ↷
+        </button>
         <fieldset class="segments">
           <legend class="hidden">Unit of angles</legend>
           {(['deg', 'rad'] as const).map((unit) => (
@@ -124,7 +176,7 @@ function Header() {
               type="button"
               aria-pressed={angleUnit.value === unit}
               onClick={() => {
-                draft.value = inUnit(draft.value, unit);
+                angleUnit.value = unit;
               }}
             >
               {unit}
@@ -153,23 +205,6 @@ function Header() {
   );
 }
 
-/** What was remembered of an earlier visit; nothing where the browser keeps nothing. */
-function remembered(name: string): string | null {
-  try {
-    return localStorage.getItem(name);
-  } catch {
-    return null;
-  }
-}
-
-function remember(name: string, value: string): void {
-  try {
-    localStorage.setItem(name, value);
-  } catch {
-    // Then it holds for this visit.
-  }
-}
-
 const THEMES = ['auto', 'light', 'dark'] as const;
 
 /** Light, dark, or as the reader's system has it. */
@@ -196,41 +231,54 @@ function Theme() {
   );
 }
 
-/** The examples, a file, and the name of the case. */
+/** When a case was changed, for people. */
+function dayOf(at: number): string {
+  return new Date(at).toLocaleString([], { day: 'numeric', month: 'short', hour: '2-digit', minute: '2-digit' });
+}
+
+/** The examples, what was worked on, a file, a new case, and the name of the case. */
 function Open() {
-  const list = useSignal<Awaited<ReturnType<typeof examples>>>([]);
-  useEffect(() => {
-    void examples().then((found) => {
-      list.value = found;
-    });
-  }, []);
+  const list = useExamples();
   const groups = [...new Set(list.value.map(({ group }) => group))];
   return (
-    <section class="open" aria-label="Open">
-      <label for="example">Example</label>
+    <section class="open" aria-label="Which case">
+      <label for="example">Open</label>
       <select
         id="example"
         value=""
         onChange={(event) => {
-          const chosen = list.value[Number(event.currentTarget.value)];
-          if (chosen) take(structuredClone(chosen.case));
+          const [of, index] = event.currentTarget.value.split(' ');
+          const chosen = (of === 'recent' ? recent : list).peek()[Number(index)];
+          if (chosen) open(structuredClone(chosen.case));
           event.currentTarget.value = '';
         }}
       >
-        <option value="">choose one …</option>
+        <option value="">example or recent case …</option>
         {groups.map((group) => (
           <optgroup key={group} label={group}>
             {list.value.map((example, index) =>
               example.group === group ? (
-                <option key={example.title} value={index}>
+                <option key={example.title} value={`example ${index}`}>
                   {example.title}
                 </option>
               ) : null,
             )}
           </optgroup>
         ))}
+        {recent.value.length > 0 && (
+          <optgroup label="Recent">
+            {recent.value.map(({ id, at, case: { name } }, index) => (
+              <option key={id} value={`recent ${index}`}>
+                {`${name ?? 'Without a name'}, ${dayOf(at)}`}
+              </option>
+            ))}
+          </optgroup>
+        )}
       </select>
-      <label for="file">or a file</label>
+      <button type="button" onClick={() => open(structuredClone(NEW))} title="A capsule in standard air, to begin with">
+        New
+      </button>
+      <label for="file">File</label>
       <input
         id="file"
         type="file"
@@ -266,6 +314,7 @@ function FlightView() {
         <h2 class="title">{current.value.case.name ?? 'Flight'}</h2>
         <Pin />
       </div>
+      <Notes name={current.value.case.name} />
       <Cards />
       <Warnings />
       <Take />

@@ -1,5 +1,7 @@
 import { useComputed } from '@preact/signals';
+import { turned } from './case';
 import { figuresOf, number } from './figures';
+import { type Name, QUANTITIES } from './quantities';
 import { Scroll } from './scroll';
 import { angleUnit, current, problem } from './store';
 
@@ -100,10 +102,13 @@ const ENDS = { time: 's', longitude: '', geocentric_latitude: '', speed: 'm/s', 
 
 /** The derivatives of the end, where they were asked. */
 export function Sensitivities() {
-  const sensitivities = current.value?.flight.answer.sensitivities;
+  const answer = current.value?.flight.answer;
+  const sensitivities = answer?.sensitivities;
   if (!sensitivities) return null;
   const ends = Object.keys(ENDS) as (keyof typeof ENDS)[];
   const causes = Object.keys(sensitivities.time) as (keyof typeof sensitivities.time)[];
+  const isAngle = (name: string) => name in QUANTITIES && QUANTITIES[name as Name].angle;
+  const turn = (name: string) => (isAngle(name) ? (turned(1, answer.angle_unit, angleUnit.value) as number) : 1);
   return (
     <section aria-label="Sensitivities">
       <h2>Sensitivities of the end</h2>
@@ -115,7 +120,7 @@ export function Sensitivities() {
               {ends.map((end) => (
                 <th scope="col" key={end}>
                   {end.replaceAll('_', ' ')}
-                  {ENDS[end] ? `, ${ENDS[end]}` : `, ${angleUnit.value}`}
+                  {`, ${ENDS[end] || angleUnit.value}`}
                 </th>
               ))}
             </tr>
@@ -125,7 +130,7 @@ export function Sensitivities() {
               <tr key={cause}>
                 <th scope="row">{cause.replaceAll('_', ' ')}</th>
                 {ends.map((end) => (
-                  <td key={end}>{number(sensitivities[end][cause] ?? Number.NaN, 5)}</td>
+                  <td key={end}>{number((sensitivities[end][cause] ?? Number.NaN) * (turn(end) / turn(cause)), 5)}</td>
                 ))}
               </tr>
             ))}

@@ -61,12 +61,35 @@ const ANGLES = new Set([
   'angle_of_attack',
 ]);
 
-/** A case with its angles in another unit: the same flight. */
+/** An angle in another unit; what is no number stays as it is. */
+export function turned(value: unknown, from: AngleUnit, to: AngleUnit): unknown {
+  if (from === to || typeof value !== 'number') return value;
+  return to === 'deg' ? (value * 180) / Math.PI : (value * Math.PI) / 180;
+}
+
+/** An angle in another unit as one reads it: to 14 digits, so that 60° there and back is 60 and not 59.99999999999999. */
+export function legible(value: unknown, from: AngleUnit, to: AngleUnit): unknown {
+  if (from === to || typeof value !== 'number') return value;
+  return Number((turned(value, from, to) as number).toPrecision(14));
+}
+
+/** What keeps a value from being a case; null where nothing does. Whether it can be flown the service says. */
+export function whyNoCase(value: unknown): string | null {
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) return 'it is not a JSON object';
+  const missing = ['vehicle', 'initial_state'].filter((name) => {
+    const part = (value as Record<string, unknown>)[name];
+    return typeof part !== 'object' || part === null;
+  });
+  return missing.length === 0 ? null : `it has no ${missing.join(' and no ')}`;
+}
+
+/** A case with its angles in another unit: the same flight. Degrees are rounded to what one reads, radians not. */
 export function inUnit(tree: Case, unit: AngleUnit): Case {
-  if ((tree.angle_unit ?? 'rad') === unit) return tree;
+  const from = tree.angle_unit ?? 'rad';
+  if (from === unit) return tree;
   const scale = (value: unknown): unknown => {
     if (Array.isArray(value)) return value.map(scale);
-    return typeof value === 'number' ? rounded(unit === 'deg' ? (value * 180) / Math.PI : (value * Math.PI) / 180) : value;
+    return unit === 'deg' ? legible(value, from, unit) : turned(value, from, unit);
   };
   const walk = (value: unknown): unknown => {
     if (Array.isArray(value)) return value.map(walk);
@@ -82,9 +105,4 @@ export function inUnit(tree: Case, unit: AngleUnit): Case {
     );
   };
   return { ...(walk(tree) as Case), angle_unit: unit };
-}
-
-/** To 15 digits, so that 30° there and back is 30° and not 29.999999999999996°. */
-function rounded(value: number): number {
-  return Number(value.toPrecision(15));
 }

@@ -1,6 +1,7 @@
 import type { Solution } from './api';
 import { difference, endsApart, type Figure, figuresOf, number } from './figures';
 import type { Run } from './flight';
+import { completed } from './fly';
 import { Scroll } from './scroll';
 import { angleUnit, current, pins, runs, solution, theory, theoryProblem } from './store';
 
@@ -14,6 +15,7 @@ function pin(): void {
   const used = pins.value.map((run) => run.colour);
   const colour = [1, 2, 3, 4, 5, 6].find((candidate) => !used.includes(candidate)) ?? 1;
   pins.value = [...pins.value, { ...current.value, id: lastId, label: `${current.value.case.name ?? 'Flight'} #${lastId}`, colour }];
+  void completed(lastId);
 }
 
 /** Keeps the current flight. */

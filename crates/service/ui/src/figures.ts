@@ -1,4 +1,4 @@
-import type { Flight, Numbers } from './flight';
+import { endOf, type Flight, type Numbers } from './flight';
 import { type AngleUnit, type Name, QUANTITIES, scaleOf, unitOf } from './quantities';
 
 /** A figure by which a flight is judged. */
@@ -11,20 +11,7 @@ export interface Figure {
   note?: string;
 }
 
-const ENDS = {
-  surface_impact: 'Impact',
-  stop_altitude: 'Stop altitude',
-  time_limit: 'Time limit',
-  condition: 'Stop condition',
-  atmosphere_exit: 'Exit',
-} as const;
-
 const PEAKS = ['load_factor', 'deceleration', 'dynamic_pressure', 'mach', 'heat_flux', 'heat_load', 'wall_temperature'] as const;
-
-/** How a flight ended, in a word or two. */
-export function endOf(flight: Flight): string {
-  return ENDS[flight.answer.termination];
-}
 
 /** The figures of a flight, in the order in which people ask for them. */
 export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
@@ -51,8 +38,8 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
   });
   const highest = answer.peaks.altitude;
   return [
-    { label: 'Time', unit: 's', value: final.time ?? Number.NaN, note: endOf(flight) },
-    { label: 'Place', unit: '', value: placeOf(final), note: 'geodetic latitude, longitude' },
+    { label: 'Time', unit: 's', value: final.time ?? Number.NaN, note: capital(endOf(answer)) },
+    { label: 'Place', unit: '', value: placeOf(final, angleUnit), note: 'geodetic latitude, longitude' },
     end('speed'),
     end('flight_path_angle'),
     ...peaks,
@@ -65,10 +52,16 @@ function whereOf(peak: { time: number; altitude: number }): string {
   return `${kilometres(peak.altitude, 4)} km, ${number(peak.time, 4)} s`;
 }
 
-/** Geodetic latitude and longitude, degrees, as other tools take them. */
-export function placeOf(row: Numbers): string {
-  return `${(row.geodetic_latitude ?? Number.NaN).toFixed(5)}°, ${(row.longitude ?? Number.NaN).toFixed(5)}°`;
+/** Geodetic latitude and longitude, as other tools take them in degrees: to a metre. */
+export function placeOf(row: Numbers, unit: AngleUnit): string {
+  const written = (name: Name) => {
+    const value = (row[name] ?? Number.NaN) * scaleOf(name, unit);
+    return unit === 'deg' ? `${value.toFixed(5)}°` : `${value.toFixed(7)} rad`;
+  };
+  return `${written('geodetic_latitude')}, ${written('longitude')}`;
 }
+
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** A number to so many digits, without zeros at its end. */
 export function number(value: number, digits = 6): string {
@@ -79,6 +72,31 @@ export function number(value: number, digits = 6): string {
   return Number(value.toPrecision(digits))
     .toLocaleString('en', { maximumFractionDigits: 12, useGrouping: size >= 1e5 })
     .replace('-', '−');
+}
+
+/** A number to four digits, zeros at its end among them: it keeps its width while it changes. */
+export function reading(value: number): string {
+  if (!Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e7)) return value.toExponential(3).replaceAll('-', '−').replace('e+', 'e');
+  return value.toFixed(decimalsFor(size, 4)).replace('-', '−');
+}
+
+/** So many decimals that a number of this size has so many digits. */
+function decimalsFor(size: number, digits: number): number {
+  return size === 0 ? digits - 1 : Math.min(Math.max(digits - 1 - Math.floor(Math.log10(size)), 0), 20);
+}
+
+/** The numbers of a column, with the same decimals, six digits in its greatest; by powers of ten where the least would vanish. */
+export function columnOf(values: number[]): string[] {
+  const sizes = values.map(Math.abs).filter((size) => size > 0 && Number.isFinite(size));
+  const [least, greatest] = [Math.min(...sizes), Math.max(...sizes, 0)];
+  const decimals = decimalsFor(greatest, 6);
+  const isWide = sizes.length > 0 && (greatest >= 1e9 || greatest < 1e-3 || (least < 1e-3 && least < 10 ** -decimals));
+  return values.map((value) => {
+    if (!Number.isFinite(value)) return '–';
+    return (isWide ? value.toExponential(4) : value.toFixed(decimals)).replaceAll('-', '−').replace('e+', 'e');
+  });
 }
 
 /** A length in km, of metres to the millimetre: a flight ends on the ground and not a rounding above it. */

@@ -46,9 +46,9 @@ const PEAKS: Partial<Record<keyof Answer['peaks'], string>> = {
 };
 
 const ENDS: Record<Answer['termination'], string> = {
+  stop_altitude: 'stopped',
   surface_impact: 'impact',
-  stop_altitude: 'stop altitude',
-  time_limit: 'end of time',
+  time_limit: 'time limit',
   condition: 'stop condition',
   atmosphere_exit: 'exit',
 };
@@ -59,7 +59,7 @@ export function flightOf(answer: Answer): Flight {
   const numbers = (row: object): Numbers =>
     Object.fromEntries(
       Object.entries(row)
-        .filter(([name]) => name in QUANTITIES)
+        .filter(([name, value]) => name in QUANTITIES && typeof value === 'number')
         .map(([name, value]) => [name, value * factor(name as Name)]),
     );
   const columns = Object.fromEntries(
@@ -70,8 +70,14 @@ export function flightOf(answer: Answer): Flight {
   return { answer, columns, initial: numbers(answer.initial_state), final: numbers(answer.final_state), marks: marksOf(answer) };
 }
 
+/** How a flight ended, in a few words. */
+export function endOf({ termination, final_state }: Answer): string {
+  if (termination !== 'stop_altitude') return ENDS[termination];
+  return `${ENDS.stop_altitude} at ${Number((final_state.altitude / 1e3).toPrecision(4))} km`;
+}
+
 function marksOf(answer: Answer): Mark[] {
-  const { initial_state, final_state, peaks, events, termination } = answer;
+  const { initial_state, final_state, peaks, events } = answer;
   const marks: Mark[] = [{ kind: 'start', label: 'start', time: initial_state.time }];
   for (const event of events ?? []) marks.push({ kind: 'event', label: event.name ?? `event ${event.index + 1}`, time: event.time });
   for (const [name, label] of Object.entries(PEAKS)) {
@@ -79,7 +85,7 @@ function marksOf(answer: Answer): Mark[] {
     // A peak at an end of the flight is the end.
     if (peak && peak.time > initial_state.time && peak.time < final_state.time) marks.push({ kind: 'peak', label, time: peak.time });
   }
-  marks.push({ kind: 'end', label: ENDS[termination], time: final_state.time });
+  marks.push({ kind: 'end', label: endOf(answer), time: final_state.time });
   return marks;
 }
 

@@ -1,14 +1,14 @@
 import { useRef, useState } from 'preact/hooks';
-import { get, type Path, set } from './case';
+import { get, legible, type Path, set, turned } from './case';
 import { number } from './figures';
-import { angleUnit, draft } from './store';
+import { angleUnit, caseUnit, draft } from './store';
 
 interface Slider {
   label: string;
   path: Path;
   unit: string;
   isAngle?: true;
-  /** Where it begins and ends, of a value in its unit, angles in degrees. */
+  /** Where it begins and ends, of a value in its unit; of an angle in degrees. */
   range(value: number): [number, number];
   /** What holds where the case does not say. */
   without?: number;
@@ -58,8 +58,11 @@ export function Sliders() {
 }
 
 function SliderLine({ slider }: { slider: Slider }) {
-  const perDegree = slider.isAngle && angleUnit.value === 'rad' ? Math.PI / 180 : 1;
-  const value = ((get(draft.value, slider.path) as number | undefined) ?? slider.without ?? 0) / perDegree;
+  const own = (get(draft.value, slider.path) as number | undefined) ?? slider.without ?? 0;
+  // Of an angle in degrees, in which its ends are.
+  const value = slider.isAngle ? (legible(own, caseUnit.value, 'deg') as number) : own;
+  const isInRadians = slider.isAngle && angleUnit.value === 'rad';
+  const text = isInRadians ? `${number((value * Math.PI) / 180, 6)} rad` : `${number(value, 6)} ${slider.unit}`;
   const isMoving = useRef(false);
   const [range, setRange] = useState(() => rangeOf(slider, value));
   const isOutside = value < range[0] - 1e-9 || value > range[1] + 1e-9;
@@ -70,9 +73,7 @@ function SliderLine({ slider }: { slider: Slider }) {
   return (
     <div class="slider">
       <label for={id}>{slider.label}</label>
-      <output for={id}>
-        {number(value, 6)} {slider.unit}
-      </output>
+      <output for={id}>{text}</output>
       <input
         id={id}
         type="range"
@@ -80,7 +81,7 @@ function SliderLine({ slider }: { slider: Slider }) {
         max={STEPS}
         step={1}
         value={high > low ? Math.round((value - low) / step) : 0}
-        aria-valuetext={`${number(value, 6)} ${slider.unit}`}
+        aria-valuetext={text}
         onPointerDown={() => {
           isMoving.current = true;
         }}
@@ -88,8 +89,8 @@ function SliderLine({ slider }: { slider: Slider }) {
           isMoving.current = false;
         }}
         onInput={(event) => {
-          const next = low + Number(event.currentTarget.value) * step;
-          draft.value = set(draft.peek(), slider.path, Number((Number(next.toPrecision(5)) * perDegree).toPrecision(12)));
+          const next = Number((low + Number(event.currentTarget.value) * step).toPrecision(5));
+          draft.value = set(draft.peek(), slider.path, slider.isAngle ? turned(next, 'deg', caseUnit.peek()) : next);
         }}
       />
     </div>

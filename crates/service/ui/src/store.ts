@@ -1,7 +1,8 @@
-import { computed, signal } from '@preact/signals';
+import { computed, effect, signal } from '@preact/signals';
 import type { Case, Problem, Solution, Theory } from './api';
 import type { Run } from './flight';
-import type { AngleUnit } from './quantities';
+import { remember, remembered } from './memory';
+import type { AngleUnit, Name } from './quantities';
 
 /** The case as it is typed: the body of the next request, with texts where no numbers were typed. */
 export const draft = signal<Case>({} as Case);
@@ -12,6 +13,9 @@ export const current = signal<Run | null>(null);
 /** Why the case as it is typed cannot be flown. */
 export const problem = signal<Problem | null>(null);
 
+/** Why the case as it is typed is not flown yet: the service is asked again. */
+export const waiting = signal<string | null>(null);
+
 /** The flights that were kept to compare with. */
 export const pins = signal<Run[]>([]);
 
@@ -21,8 +25,15 @@ export const theory = signal<Theory | null>(null);
 /** The instant of the current flight at which the plots and maps are looked at, s. */
 export const cursor = signal<number | null>(null);
 
-/** The unit of angles, in and out. */
-export const angleUnit = computed<AngleUnit>(() => (draft.value.angle_unit === 'deg' ? 'deg' : 'rad'));
+/** The quantities of which the reader wants plots beside those that are always there. */
+export const added = signal<Name[]>([]);
+
+/** The unit in which the reader reads and types angles, kept over visits. The case keeps its own. */
+export const angleUnit = signal<AngleUnit>(remembered('angle-unit') === 'rad' ? 'rad' : 'deg');
+effect(() => remember('angle-unit', angleUnit.value));
+
+/** The unit of the angles of the case. */
+export const caseUnit = computed<AngleUnit>(() => (draft.value.angle_unit === 'deg' ? 'deg' : 'rad'));
 
 /** All flights that are shown: the current one, then the pins. */
 export const runs = computed<Run[]>(() => (current.value ? [current.value, ...pins.value] : pins.value));

@@ -1,6 +1,6 @@
 import { useSignal } from '@preact/signals';
-import { download, ProblemError } from './api';
-import { tidied } from './case';
+import { type Case, download, ProblemError } from './api';
+import { set, tidied } from './case';
 import { copied } from './clipboard';
 import { toFragment } from './link';
 import { asCurl, asJson, asPython } from './snippets';
@@ -20,7 +20,6 @@ export function Take() {
   };
   const link = async () => {
     const fragment = await toFragment(tidied(draft.value));
-    history.replaceState(null, '', fragment);
     await copy('Link', new URL(fragment, location.href).href);
   };
   const save = async (format: (typeof FORMATS)[number]) => {
@@ -77,10 +76,12 @@ export function Take() {
   );
 }
 
-/** The case for a format: a table and a map have no place for what is said about a flight. */
-function bodyFor(format: (typeof FORMATS)[number]): object {
-  const { sensitivities, verify, ...flight } = tidied(draft.value);
-  return format === 'json' ? { ...flight, sensitivities, verify } : flight;
+/** The case for a format: a table and a map have no place for what is said about a flight, and a map chooses its own columns. */
+function bodyFor(format: (typeof FORMATS)[number]): Case {
+  const tree = tidied(draft.value);
+  if (format === 'json') return tree;
+  const { sensitivities: _, verify: __, ...flight } = tree;
+  return format === 'csv' ? flight : tidied(set(flight, ['output', 'columns'], undefined));
 }
 
 function fileName(): string {

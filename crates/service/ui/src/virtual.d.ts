@@ -5,6 +5,6 @@ declare module 'virtual:schema' {
 }
 
 declare module 'virtual:examples' {
-  const examples: { group: string; title: string; case: import('./api').Case }[];
+  const examples: { group: string; title: string; case: import('./api').Case; notes: string }[];
   export default examples;
 }

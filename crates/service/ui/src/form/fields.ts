@@ -492,6 +492,10 @@ export const SECTIONS = {
   name: { kind: 'text', label: 'Name' },
   sensitivities: { kind: 'flag', label: 'Sensitivities of the end' },
   verify: { kind: 'flag', label: 'Verify the accuracy' },
-  angle_unit: { kind: 'words', label: 'Angles', words: { rad: 'rad', deg: 'deg' } satisfies Record<Schemas['AngleUnit'], string> },
+  angle_unit: {
+    kind: 'words',
+    label: 'Angles in the JSON',
+    words: { rad: 'radians', deg: 'degrees' } satisfies Record<Schemas['AngleUnit'], string>,
+  },
   echo: { kind: 'flag', label: 'Repeat the case in the answer' },
 } satisfies Of<Schemas['SimulateRequest']>;

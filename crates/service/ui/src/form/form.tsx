@@ -1,11 +1,14 @@
 import schema from 'virtual:schema';
+import { computed } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useState } from 'preact/hooks';
 import type { Case, State } from '../api';
-import { get, type Path, pointer, set } from '../case';
-import { angleUnit, draft, problem } from '../store';
+import { get, inUnit, legible, type Path, pointer, set, turned } from '../case';
+import { type AngleUnit, type Name, QUANTITIES } from '../quantities';
+import { angleUnit, caseUnit, draft, problem } from '../store';
 import { type Field, type Fields, type Kind, SCHEDULE, SECTIONS, THRUST } from './fields';
-import { NumberInput, RowsInput, TextInput } from './inputs';
+import { exchanged, forget } from './held';
+import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
 import type { Property } from './schema';
 import { rename, retype } from './state';
 
@@ -19,7 +22,7 @@ const FOLDS: [string, (keyof Case)[]][] = [
   ['Heating', ['heating']],
   ['Events', ['events']],
   ['Stop', ['stop']],
-  ['Solver and output', ['solver', 'sensitivities', 'verify', 'output', 'echo']],
+  ['Solver and output', ['solver', 'sensitivities', 'verify', 'output', 'echo', 'angle_unit']],
 ];
 
 /** The form of the whole case. */
@@ -96,7 +99,7 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
           label={field.kind === 'numbers' && unitOf(field) ? `${field.label}, ${unitOf(field)}` : field.label}
           path={path}
           property={property}
-          unit={field.kind === 'numbers' ? undefined : unitOf(field)}
+          unit={field.kind === 'numbers' ? undefined : unitOf(field, path)}
         >
           <Control field={field} path={path} property={property} />
         </Line>
@@ -130,10 +133,26 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
   }
 }
 
-function unitOf(field: { unit?: string; isAngle?: true } | Field): string | undefined {
-  if ('isAngle' in field && field.isAngle) return angleUnit.value === 'deg' ? '°' : 'rad';
+/** The unit of a field, at a path where that decides it. */
+function unitOf(field: Field, path?: Path): string | undefined {
+  if (isAngle(field, path)) return angleUnit.value === 'deg' ? '°' : 'rad';
   return 'unit' in field ? field.unit : undefined;
 }
+
+/** Whether a field is an angle; the value of a condition is one where its quantity is. */
+function isAngle(field: Field, path?: Path): boolean {
+  if ('isAngle' in field && field.isAngle) return true;
+  const name = path?.at(-1);
+  if (!path || (name !== 'falls_through' && name !== 'rises_through')) return false;
+  const quantity = get(draft.value, [...path.slice(0, -1), 'quantity']) as Name | undefined;
+  return quantity !== undefined && QUANTITIES[quantity]?.angle === true;
+}
+
+/** Angles are read and typed in the reader's unit; the case keeps its own, and with it every number as it was typed. */
+const angles = computed<Reading>(() => {
+  const [own, readers] = [caseUnit.value, angleUnit.value];
+  return { shown: (value) => legible(value, own, readers), stored: (value) => turned(value, readers, own) };
+});
 
 const idOf = (path: Path) => `field${pointer(path)}`;
 
@@ -201,6 +220,7 @@ function Control({ field, path, property, name }: ItemProps) {
           {...input}
           value={value as number | string | undefined}
           placeholder={placeholder}
+          reading={isAngle(field, path) ? angles.value : undefined}
           onValue={(next) => put(path, next)}
         />
       );
@@ -229,8 +249,8 @@ function Control({ field, path, property, name }: ItemProps) {
         <RowsInput
           {...input}
           rows={1}
-          value={Array.isArray(value) && value.length > 0 ? [value] : []}
-          onValue={(rows) => put(path, rows.flat())}
+          value={Array.isArray(value) && value.length > 0 ? [isAngle(field) ? value.map(angles.value.shown) : value] : []}
+          onValue={(rows) => put(path, isAngle(field) ? rows.flat().map(angles.value.stored) : rows.flat())}
         />
       );
     default:
@@ -258,7 +278,12 @@ function Words({
       {...select(path)}
       aria-label={name}
       value={String(value ?? property?.default ?? '')}
-      onChange={(event) => put(path, event.currentTarget.value)}
+      onChange={(event) => {
+        const next = event.currentTarget.value;
+        // Another unit is another way to write the same case.
+        if (path[0] === 'angle_unit') draft.value = inUnit(draft.peek(), next as AngleUnit);
+        else put(path, next);
+      }}
     >
       {value === undefined && !isDefault && <option value="">choose</option>}
       {names.map((name) => (
@@ -338,16 +363,18 @@ type GroupProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: 'gr
 function Group({ field, path, isBare }: GroupProps) {
   const isThere = get(draft.value, path) !== undefined;
   const body = (!field.isOptional || isThere) && <Members fields={field.fields} schema={field.schema} path={path} />;
-  const toggle = field.isOptional && (
+  const toggle = (isOn: boolean) =>
+    put(path, isOn ? exchanged(path, 'off', 'on', emptyOf(field)) : exchanged(path, 'on', 'off', undefined));
+  const box = field.isOptional && (
     <label class="check">
-      <input type="checkbox" checked={isThere} onChange={(event) => put(path, event.currentTarget.checked ? emptyOf(field) : undefined)} />
+      <input type="checkbox" checked={isThere} onChange={(event) => toggle(event.currentTarget.checked)} />
       {field.isOptional}
     </label>
   );
   if (isBare || field.isOptional)
     return (
       <div class="group">
-        {toggle}
+        {box}
         {body}
         <Faults path={path} />
       </div>
@@ -416,12 +443,10 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
   const name = given ?? chosen;
   const field = fields[name] as Field;
   const property = schema[of]?.[name];
-  const isAngle =
-    field.kind === 'number' && names.includes('falls_through') && get(draft.value, [...path, 'quantity']) === 'flight_path_angle';
   const change = (next: string) => {
     choose(next);
     if (path[0] === 'initial_state' && given) void rename(given, next);
-    else if (given) put(path, swapped(get(draft.peek(), path), given, next, fields[next] as Field));
+    else if (given) put(path, swapped(path, given, next, fields[next] as Field));
     else put([...path, next], startOf(fields[next] as Field, undefined));
   };
   const label = (
@@ -446,16 +471,17 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
       </div>
     );
   return (
-    <Line label={label} path={[...path, name]} property={property} unit={isAngle ? unitOf({ isAngle: true }) : unitOf(field)}>
+    <Line label={label} path={[...path, name]} property={property} unit={unitOf(field, [...path, name])}>
       <Control field={field} path={[...path, name]} property={property} name={field.label} />
     </Line>
   );
 }
 
-/** A part with one field in place of another. */
-function swapped(part: unknown, from: string, to: string, field: Field): unknown {
-  const { [from]: old, ...others } = part as Record<string, unknown>;
-  return { ...others, [to]: startOf(field, old) };
+/** A part with one field in place of another: a number stays, anything else comes back as it was. */
+function swapped(path: Path, from: string, to: string, field: Field): unknown {
+  const { [from]: old, ...others } = get(draft.peek(), path) as Record<string, unknown>;
+  const start = startOf(field, old);
+  return { ...others, [to]: field.kind === 'number' ? start : exchanged(path, from, to, start, old) };
 }
 
 /** What a field begins with that takes another's place. */
@@ -468,7 +494,11 @@ function startOf(field: Field, old: unknown): unknown {
 
 /** Columns of as many numbers, edited as the rows of a table. */
 function Table({ fields, names, path }: { fields: Fields; names: string[]; path: Path }) {
-  const columns = names.map((name) => (get(draft.value, [...path, name]) as unknown[] | undefined) ?? []);
+  const readings = names.map((name) => (isAngle(fields[name] as Field) ? angles.value : undefined));
+  const columns = names.map((name, index) => {
+    const own = (get(draft.value, [...path, name]) as unknown[] | undefined) ?? [];
+    return readings[index] ? own.map(readings[index].shown) : own;
+  });
   const length = Math.max(...columns.map((column) => column.length));
   const filled = columns.filter((column, index) => index === 0 || column.length > 0);
   const rows = Array.from({ length }, (_, row) => filled.map((column) => column[row]));
@@ -479,9 +509,10 @@ function Table({ fields, names, path }: { fields: Fields; names: string[]; path:
   });
   const store = (next: unknown[][]) => {
     const width = Math.max(0, ...next.map((cells) => cells.length));
-    const written = names
-      .slice(0, Math.max(width, 2))
-      .map((name, index) => [name, next.flatMap((cells) => (cells[index] === undefined ? [] : [cells[index]]))]);
+    const written = names.slice(0, Math.max(width, 2)).map((name, index) => {
+      const cells = next.map((row) => row[index]).filter((cell) => cell !== undefined);
+      return [name, readings[index] ? cells.map(readings[index].stored) : cells];
+    });
     const { ...part } = get(draft.peek(), path) as Record<string, unknown>;
     for (const name of names) delete part[name];
     put(path, { ...part, ...Object.fromEntries(written) });
@@ -506,7 +537,7 @@ function Variant({ field, path, property }: VariantProps) {
   const kind: Kind | undefined = type === undefined ? undefined : field.kinds[type];
   const change = (next: string) => {
     if (path[0] === 'initial_state') void retype(next as State['type']);
-    else put(path, next === '' ? undefined : { type: next });
+    else put(path, exchanged(path, type ?? '', next, next === '' ? undefined : { type: next }));
   };
   return (
     <div class="group">
@@ -534,8 +565,13 @@ function Command({ label, path, property }: { label: string; path: Path; propert
     put(
       path,
       isOn
-        ? { type: 'schedule', against: 'time', at: [0], value: [typeof value === 'number' ? value : 0] }
-        : (get(value, ['value', 0]) ?? undefined),
+        ? exchanged(path, 'number', 'schedule', {
+            type: 'schedule',
+            against: 'time',
+            at: [0],
+            value: [typeof value === 'number' ? value : 0],
+          })
+        : exchanged(path, 'schedule', 'number', get(value, ['value', 0])),
     );
   return (
     <div class="group">
@@ -546,7 +582,7 @@ function Command({ label, path, property }: { label: string; path: Path; propert
         ) : (
           <Control field={{ kind: 'number', label, isAngle: true }} path={path} property={property} />
         )}
-        {!isSchedule && <span class="unit">{unitOf({ isAngle: true })}</span>}
+        {!isSchedule && <span class="unit">{unitOf({ kind: 'number', label, isAngle: true })}</span>}
         <Faults path={path} />
       </div>
       <label class="check">
@@ -562,7 +598,8 @@ function Command({ label, path, property }: { label: string; path: Path; propert
 function Thrust({ label, path, property }: { label: string; path: Path; property?: Property | undefined }) {
   const value = get(draft.value, path);
   const state = value === undefined ? '' : value === 'off' ? 'off' : 'on';
-  const change = (next: string) => put(path, next === '' ? undefined : next === 'off' ? 'off' : { along: 'velocity' });
+  const starts: Record<string, unknown> = { '': undefined, off: 'off', on: { along: 'velocity' } };
+  const change = (next: string) => put(path, exchanged(path, state, next, starts[next]));
   return (
     <div class="group">
       <Line label={label} path={path} property={property}>
@@ -591,7 +628,14 @@ function List({ field, path, isBare }: ListProps) {
             <span>
               {field.one} {index + 1}
             </span>
-            <button type="button" onClick={() => put([...path, index], undefined)} aria-label={`Remove ${field.one} ${index + 1}`}>
+            <button
+              type="button"
+              onClick={() => {
+                forget();
+                put([...path, index], undefined);
+              }}
+              aria-label={`Remove ${field.one} ${index + 1}`}
+            >
               Remove
             </button>
           </div>

@@ -10,6 +10,14 @@ interface Common {
   help?: string | undefined;
 }
 
+/** How a value of the case is read, and how what is typed is stored. */
+export interface Reading {
+  shown(value: unknown): unknown;
+  stored(value: unknown): unknown;
+}
+
+const AS_IT_IS: Reading = { shown: (value) => value, stored: (value) => value };
+
 interface TextProps<T> extends Common {
   value: T | undefined;
   placeholder?: string | undefined;
@@ -25,11 +33,17 @@ const attributes = ({ id, label, describedBy, isBad, help }: Common) => ({
 });
 
 /** A field for a number. What is typed stays as it is typed as long as it means the value. */
-export function NumberInput({ value, placeholder, onValue, ...common }: TextProps<number | string>) {
-  const [text, setText] = useState(shown(value));
+export function NumberInput({
+  value,
+  placeholder,
+  onValue,
+  reading = AS_IT_IS,
+  ...common
+}: TextProps<number | string> & { reading?: Reading | undefined }) {
+  const [text, setText] = useState(shown(reading.shown(value)));
   useEffect(() => {
-    if (typed(text) !== value) setText(shown(value));
-  }, [value]);
+    if (reading.stored(typed(text)) !== value) setText(shown(reading.shown(value)));
+  }, [value, reading]);
   return (
     <input
       {...attributes(common)}
@@ -41,7 +55,7 @@ export function NumberInput({ value, placeholder, onValue, ...common }: TextProp
       placeholder={placeholder}
       onInput={(event) => {
         setText(event.currentTarget.value);
-        onValue(typed(event.currentTarget.value));
+        onValue(reading.stored(typed(event.currentTarget.value)) as number | string | undefined);
       }}
     />
   );

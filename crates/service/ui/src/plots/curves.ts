@@ -24,15 +24,21 @@ const OTHERS: Name[] = [
   'mass',
 ];
 
-/** The quantities that are plotted of a flight. */
-export function plotted(flight: Flight, added: Name[]): Name[] {
-  return [...THESIS, ...OTHERS, ...added].filter((name, index, all) => flight.columns[name] && all.indexOf(name) === index);
+/** The quantities that are plotted of a flight of which these are known. */
+export function plotted(known: object, added: Name[]): Name[] {
+  return [...THESIS, ...OTHERS, ...added].filter((name, index, all) => name in known && all.indexOf(name) === index);
+}
+
+/** The columns that plots and maps draw. */
+export function drawn(known: object, added: Name[]): Name[] {
+  const placed: Name[] = ['time', 'longitude', 'geodetic_latitude'];
+  return [...placed, ...plotted(known, added)].filter((name, index, all) => all.indexOf(name) === index);
 }
 
 /** The quantities that may be added. */
-export function addable(flight: Flight, added: Name[]): Name[] {
-  const shown = plotted(flight, added);
-  return (Object.keys(QUANTITIES) as Name[]).filter((name) => name !== 'time' && flight.columns[name] && !shown.includes(name));
+export function addable(known: object, added: Name[]): Name[] {
+  const shown = plotted(known, added);
+  return (Object.keys(QUANTITIES) as Name[]).filter((name) => name !== 'time' && name in known && !shown.includes(name));
 }
 
 /** The axes of the plot of a quantity. Against itself a quantity says nothing: then it is against time. */

@@ -1,9 +1,9 @@
 import { useSignal } from '@preact/signals';
-import { number } from '../figures';
+import { columnOf, number, reading } from '../figures';
 import type { Flight } from '../flight';
 import { type Name, QUANTITIES, unitOf } from '../quantities';
 import { Scroll } from '../scroll';
-import { angleUnit, current, cursor, runs } from '../store';
+import { added, angleUnit, current, cursor, runs } from '../store';
 import { type Axes, addable, axesOf, curveOf, type Layout, picked, plotted, titleOf, valueAt } from './curves';
 import { Plot } from './plot';
 import './plots.css';
@@ -19,12 +19,11 @@ const ROWS = 50;
 /** The plots of all flights that are shown, linked by one instant. */
 export function Plots() {
   const layout = useSignal<Layout>('thesis');
-  const added = useSignal<Name[]>([]);
   const unzoom = useSignal(0);
   const flight = current.value?.flight;
   if (!flight) return null;
-  const names = plotted(flight, added.value);
-  const more = addable(flight, added.value);
+  const names = plotted(flight.final, added.value);
+  const more = addable(flight.final, added.value);
   return (
     <section aria-label="Plots" class="group">
       <div class="plots-bar">
@@ -103,6 +102,7 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
     <div class={isLarge ? 'plot-card large' : 'plot-card'}>
       <div class="plot-head">
         <h3>{isLarge ? `${titleOf(axes.y, unit)}, against speed` : titleOf(axes.y, unit)}</h3>
+        <Readings axes={axes} />
         {onRemove && (
           <button type="button" class="small" onClick={onRemove} aria-label={`Remove the plot of ${QUANTITIES[axes.y].label}`}>
             ×
@@ -115,18 +115,35 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
   );
 }
 
-const READ: Name[] = ['altitude', 'speed', 'flight_path_angle', 'load_factor', 'mach', 'convective_heat_flux'];
+/** The plotted quantity of every flight at the instant that is looked at. */
+function Readings({ axes }: { axes: Axes }) {
+  const time = cursor.value;
+  return (
+    <span class="readings">
+      {runs.value.map((run) => {
+        const isOver = time === null || time > (run.flight.final.time ?? 0);
+        return (
+          <span key={run.id} class="reading" title={run.id === 0 ? 'Current flight' : run.label}>
+            {runs.value.length > 1 && <span class={`swatch run-${run.colour}`} />}
+            <span style={{ color: `var(--run-${run.colour})` }}>{isOver ? '–' : reading(valueAt(run, axes.y, time, angleUnit.value))}</span>
+          </span>
+        );
+      })}
+    </span>
+  );
+}
 
-/** The instant that is looked at, and what is there. */
+const READ: Name[] = ['altitude', 'speed'];
+
+/** The instant that is looked at: it stays in sight as long as the plots are. */
 function Instant({ flight }: { flight: Flight }) {
   const run = current.value;
   const unit = angleUnit.value;
   const end = flight.final.time ?? 0;
   const time = cursor.value === null ? null : Math.min(cursor.value, end);
-  const read = READ.filter((name) => flight.columns[name]);
   return (
     <div class="instant">
-      <label for="instant">Instant</label>
+      <label for="instant">Time</label>
       <input
         id="instant"
         type="range"
@@ -144,10 +161,10 @@ function Instant({ flight }: { flight: Flight }) {
       />
       <span class="quiet">
         {time === null || !run
-          ? 'point at a plot to read it; drag to zoom'
+          ? 'point at a plot to read all of them; drag to zoom'
           : [
-              `${number(time, 5)} s`,
-              ...read.map((name) => `${QUANTITIES[name].label} ${number(valueAt(run, name, time, unit), 5)} ${unitOf(name, unit)}`),
+              `${reading(time)} s`,
+              ...READ.map((name) => `${QUANTITIES[name].label} ${reading(valueAt(run, name, time, unit))} ${unitOf(name, unit)}`),
             ].join(' · ')}
       </span>
     </div>
@@ -160,11 +177,12 @@ function Table({ names }: { names: Name[] }) {
   const run = current.value;
   return (
     <details
+      class="table"
       onToggle={(event) => {
         isOpen.value = event.currentTarget.open;
       }}
     >
-      <summary>The same as a table</summary>
+      <summary>Show as table</summary>
       {isOpen.value && run && (
         <Rows flight={run.flight} names={['time', ...names]} label={runs.value.length > 1 ? 'Current flight' : 'Flight'} />
       )}
@@ -174,7 +192,11 @@ function Table({ names }: { names: Name[] }) {
 
 function Rows({ flight, names, label }: { flight: Flight; names: Name[]; label: string }) {
   const unit = angleUnit.value;
-  const columns = names.map((name) => curveOf(flight, { x: 'time', y: name }, unit).y);
+  const rows = picked(flight.columns.time.length, ROWS);
+  const columns = names.map((name) => {
+    const { y } = curveOf(flight, { x: 'time', y: name }, unit);
+    return columnOf(rows.map((row) => y[row] ?? Number.NaN));
+  });
   return (
     <Scroll label={label}>
       <table>
@@ -188,10 +210,10 @@ function Rows({ flight, names, label }: { flight: Flight; names: Name[]; label: 
           </tr>
         </thead>
         <tbody>
-          {picked(flight.columns.time.length, ROWS).map((row) => (
+          {rows.map((row, place) => (
             <tr key={row}>
               {columns.map((column, index) => (
-                <td key={names[index]}>{number(column[row] ?? Number.NaN)}</td>
+                <td key={names[index]}>{column[place]}</td>
               ))}
             </tr>
           ))}

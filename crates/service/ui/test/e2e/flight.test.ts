@@ -64,6 +64,30 @@ it('the instant is the same in every plot, by pointer and by keyboard', async ()
   await page.close();
 });
 
+it('each plot is read where it is, of every flight, and nothing moves meanwhile', async () => {
+  const { page } = await on('target_2');
+  await page.getByRole('button', { name: 'Pin this flight' }).click();
+  await page.locator('#field\\/vehicle\\/mass').fill('900');
+  await page.waitForTimeout(600);
+  const card = page.locator('.plot-card', { hasText: 'Dynamic pressure' });
+  const readings = card.locator('.reading');
+  expect(await readings.allTextContents()).toEqual(['–', '–']);
+  await card.scrollIntoViewIfNeeded();
+  const places = () => page.locator('.plot').evaluateAll((all) => all.map((plot) => plot.getBoundingClientRect().top));
+  const before = await places();
+  const box = await card.locator('.u-over').boundingBox();
+  if (!box) throw new Error('the plot has no place');
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+  await expect.poll(() => readings.allTextContents()).toEqual([expect.stringMatching(/^\d/), expect.stringMatching(/^\d/)]);
+  const [heavy, light] = await readings.allTextContents();
+  expect(heavy).not.toBe(light);
+  expect(await places()).toEqual(before);
+  // The time line is in sight all the same.
+  const line = await page.locator('.instant').boundingBox();
+  expect(line?.y).toBeGreaterThanOrEqual(0);
+  await page.close();
+});
+
 it('the dots stay on the curves where a plot is zoomed', async () => {
   const { page } = await on('target_2');
   const plot = page.locator('.plot .u-over').first();
@@ -88,9 +112,9 @@ it('the dots stay on the curves where a plot is zoomed', async () => {
 
 it('the table has the first and the last row of the flight', async () => {
   const { page } = await on('target_1');
-  await page.getByText('The same as a table').click();
+  await page.getByText('Show as table').click();
   const rows = page.getByRole('region', { name: 'Flight', exact: true }).locator('tbody tr');
-  expect(await rows.first().locator('td').first().textContent()).toBe('0');
+  expect(await rows.first().locator('td').first().textContent()).toBe('0.0000');
   expect(await rows.last().locator('td').first().textContent()).toBe('23.9377');
   await page.close();
 });

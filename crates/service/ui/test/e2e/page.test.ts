@@ -38,19 +38,16 @@ const CAPSULE: Case = {
   },
 };
 
-/** The figures of a case as the page should show them, by the answer of the service. */
+/** The figures of a case as the page should show them, by the answer of the service; angles as most read them. */
 async function expected(tree: Case): Promise<[string, string][]> {
   const answer = await ask(service.address, 'simulate', tree);
-  return figuresOf(flightOf(answer), tree.angle_unit ?? 'rad').map(({ label, value }) => [
-    label,
-    typeof value === 'number' ? number(value) : value,
-  ]);
+  return figuresOf(flightOf(answer), 'deg').map(({ label, value }) => [label, typeof value === 'number' ? number(value) : value]);
 }
 
 describe('the figures on the page are those of the API', () => {
   it('for each example, and each case of the thesis is one', async () => {
     const { page, complaints } = await open(browser, service.address);
-    const choose = page.getByLabel('Example');
+    const choose = page.getByLabel('Open', { exact: true });
     const titles = await choose.locator('option').allTextContents();
     expect(titles.filter((title) => title.startsWith('Table'))).toHaveLength(7);
     for (const title of titles.slice(1)) {
@@ -63,6 +60,49 @@ describe('the figures on the page are those of the API', () => {
     expect(complaints).toEqual([]);
     await page.close();
   });
+});
+
+it('every example downloads in every format', async () => {
+  const { page } = await open(browser, service.address);
+  const choose = page.getByLabel('Open', { exact: true });
+  const titles = (await choose.locator('option').allTextContents()).slice(1);
+  expect(titles.length).toBeGreaterThan(15);
+  for (const title of titles) {
+    await choose.selectOption({ label: title });
+    for (const format of ['CSV', 'JSON', 'GeoJSON', 'KML', 'CZML']) {
+      const button = page.getByRole('button', { name: format, exact: true }).last();
+      const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+      expect(download.suggestedFilename()).toMatch(new RegExp(`\\.${format}$`, 'i'));
+      expect(await download.failure()).toBeNull();
+      await page.getByText(`${format.toUpperCase()} saved`).waitFor();
+    }
+  }
+  await page.close();
+});
+
+it('a flight that stops above the ground is nowhere said to hit it', async () => {
+  const { page } = await on({ ...example('target_2'), stop: { altitude: 8000 } });
+  await page.locator('.card', { hasText: 'Stopped at 8 km' }).waitFor();
+  await page.locator('.places', { hasText: 'stopped at 8 km' }).waitFor();
+  expect(await page.getByText(/impact/i).count()).toBe(0);
+  await page.close();
+});
+
+it('a case says what to know of it: the flown capsules come down in Utah', async () => {
+  const { page } = await open(browser, service.address);
+  for (const [title, south] of [
+    ['Stardust, 15 January 2006', '160 km'],
+    ['Genesis, 8 September 2004', '130 km'],
+  ] as const) {
+    await page.getByLabel('Open', { exact: true }).selectOption({ label: title });
+    await page.getByRole('heading', { name: title }).waitFor();
+    expect(await page.locator('.notes').textContent()).toContain(`some ${south} south of where it was found`);
+    const [latitude, longitude] = (await figure(page, 'Place')).split(', ').map(Number.parseFloat);
+    expect(latitude).toBeCloseTo(39, 0);
+    expect(longitude).toBeGreaterThan(-113.6);
+    expect(longitude).toBeLessThan(-113.3);
+  }
+  await page.close();
 });
 
 describe('a form', () => {
@@ -277,6 +317,7 @@ it('its first paint takes less than 100 kB', async () => {
 describe.each([
   ['a phone, light', { viewport: { width: 360, height: 760 }, colorScheme: 'light' }],
   ['a desk, dark', { viewport: { width: 1440, height: 1000 }, colorScheme: 'dark' }],
+  ['a tablet, light', { viewport: { width: 768, height: 1000 }, colorScheme: 'light' }],
   ['a phone, dark', { viewport: { width: 360, height: 760 }, colorScheme: 'dark' }],
   ['a desk, light', { viewport: { width: 1440, height: 1000 }, colorScheme: 'light' }],
 ] as const)('on %s', (_, options) => {
@@ -286,8 +327,14 @@ describe.each([
     const views = options.viewport.width < 900 ? ['Case', 'Flight'] : [''];
     for (const view of views) {
       if (view) await page.getByRole('button', { name: view, exact: true }).last().click();
-      for (const fold of await page.locator('details.fold:not([open]) > summary').all()) if (await fold.isVisible()) await fold.click();
-      expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(options.viewport.width);
+      let opened = 0;
+      for (const fold of await page.locator('details > summary').all()) {
+        if (!(await fold.isVisible())) continue;
+        if (!(await fold.evaluate((summary) => (summary.parentElement as HTMLDetailsElement).open))) await fold.click();
+        opened += 1;
+        expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(options.viewport.width);
+      }
+      expect(opened).toBeGreaterThan(view === 'Flight' ? 1 : 8);
       const violations = await page.evaluate(
         `${source('axe-core/axe.min.js')}; axe.run().then((found) => found.violations.map(({ id, impact, nodes }) => [id, impact, nodes[0].html]))`,
       );

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Case } from '../../src/api';
-import { get, inUnit, pointer, set, tidied, typed } from '../../src/case';
+import { get, inUnit, legible, pointer, set, tidied, turned, typed, whyNoCase } from '../../src/case';
 import { type Field, type Fields, SECTIONS } from '../../src/form/fields';
 import { parsed, written } from '../../src/form/inputs';
 
@@ -82,7 +82,7 @@ describe('angles in another unit', () => {
   } as unknown as Case;
 
   it('are all angles, and nothing else', () => {
-    const sixth = Number((Math.PI / 6).toPrecision(15));
+    const sixth = (30 * Math.PI) / 180;
     expect(inUnit(tree, 'rad')).toEqual({
       angle_unit: 'rad',
       vehicle: { mass: 30, aerodynamics: { ...tree.vehicle.aerodynamics, angle_of_attack: [0, sixth] } },
@@ -94,7 +94,7 @@ describe('angles in another unit', () => {
         geodetic_altitude: 30,
         speed: 30,
         flight_path_angle: -sixth,
-        azimuth: Number(Math.PI.toPrecision(15)),
+        azimuth: Math.PI,
       },
       stop: {
         altitude: 30,
@@ -133,6 +133,34 @@ describe('angles in another unit', () => {
     const { angle_unit: _, ...silent } = tree;
     expect(inUnit(silent as Case, 'rad')).toBe(silent);
   });
+});
+
+describe('an angle in the other unit', () => {
+  it.each([60, -1.5, 0.1, 89.999, 304, -180, 1e-7, 22.64, 1 / 3])(
+    'of %d degrees comes back as it was typed, through radians',
+    (degrees) => {
+      const radians = turned(degrees, 'deg', 'rad');
+      expect(radians).toBeCloseTo((degrees * Math.PI) / 180, 15);
+      expect(legible(radians, 'rad', 'deg')).toBe(Number(degrees.toPrecision(14)));
+    },
+  );
+
+  it('is itself in its own unit, and a text stays a text', () => {
+    expect(legible(1 / 3, 'deg', 'deg')).toBe(1 / 3);
+    expect(turned('twelve', 'deg', 'rad')).toBe('twelve');
+    expect(legible(undefined, 'deg', 'rad')).toBeUndefined();
+  });
+});
+
+it.each([
+  [[], 'it is not a JSON object'],
+  [null, 'it is not a JSON object'],
+  [{ type: 'FeatureCollection', features: [] }, 'it has no vehicle and no initial_state'],
+  [{ vehicle: {} }, 'it has no initial_state'],
+  [{ vehicle: null, initial_state: 'x' }, 'it has no vehicle and no initial_state'],
+  [{ vehicle: {}, initial_state: {} }, null],
+])('%j is no case, or is one', (value, why) => {
+  expect(whyNoCase(value)).toBe(why);
 });
 
 it('a tidied case has no optional part in which nothing is left', () => {

@@ -9,8 +9,8 @@ const FLIGHT = {
 
 describe('the plots', () => {
   it('are those of the thesis first, as far as the flight has them', () => {
-    expect(plotted(FLIGHT, ['downrange', 'speed'])).toEqual(['altitude', 'speed', 'heading', 'downrange']);
-    expect(addable(FLIGHT, [])).toEqual(['downrange']);
+    expect(plotted(FLIGHT.columns, ['downrange', 'speed'])).toEqual(['altitude', 'speed', 'heading', 'downrange']);
+    expect(addable(FLIGHT.columns, [])).toEqual(['downrange']);
   });
 
   it('are against altitude as in the thesis, and altitude against time', () => {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Answer } from '../../src/api';
-import { difference, endsApart, figuresOf, kilometres, number, placeOf } from '../../src/figures';
+import { columnOf, difference, endsApart, figuresOf, kilometres, number, placeOf, reading } from '../../src/figures';
 import { at, flightOf, indexBefore } from '../../src/flight';
 
 const peak = (value: number) => ({ value, time: 50, altitude: 40_000 });
@@ -76,13 +76,24 @@ describe('a flight', () => {
     ]);
   });
 
+  it('that stops above the ground has no impact', () => {
+    const stopped = {
+      ...ANSWER,
+      termination: 'stop_altitude',
+      final_state: { ...ANSWER.final_state, altitude: 8000.0004 },
+    } as unknown as Answer;
+    expect(flightOf(stopped).marks.at(-1)).toMatchObject({ kind: 'end', label: 'stopped at 8 km' });
+    expect(figuresOf(flightOf(stopped), 'deg')[0]).toMatchObject({ label: 'Time', note: 'Stopped at 8 km' });
+  });
+
   it('has figures in the unit of angles', () => {
     const figure = (unit: 'rad' | 'deg', label: string) => figuresOf(flight, unit).find((candidate) => candidate.label === label);
     expect(figure('deg', 'Flight-path angle at the end')).toMatchObject({ unit: '°', value: expect.closeTo(-90, 10) });
     expect(figure('rad', 'Flight-path angle at the end')).toMatchObject({ unit: 'rad', value: expect.closeTo(-Math.PI / 2, 12) });
     expect(figure('rad', 'Peak heat flux')).toMatchObject({ unit: 'kW/m²', value: 1500, note: '40 km, 50 s' });
     expect(figure('rad', 'Peak Mach number')).toBeUndefined();
-    expect(placeOf(flight.final)).toBe('28.64789°, -177.61692°');
+    expect(placeOf(flight.final, 'deg')).toBe('28.64789°, -177.61692°');
+    expect(placeOf(flight.final, 'rad')).toBe('0.5000000 rad, -3.1000000 rad');
   });
 
   it('ends as far from another as the arc between them', () => {
@@ -103,6 +114,25 @@ it.each([
   [Number.NaN, '–'],
 ])('%d is shown as %s', (value, text) => {
   expect(number(value)).toBe(text);
+});
+
+it.each([
+  [0, '0.000'],
+  [3.7, '3.700'],
+  [-41.234, '−41.23'],
+  [6630.4, '6630'],
+  [1_234_567, '1234567'],
+  [2.5e-8, '2.500e−8'],
+  [Number.NaN, '–'],
+])('%d is read as %s', (value, text) => {
+  expect(reading(value)).toBe(text);
+});
+
+it('the numbers of a column have the same decimals', () => {
+  expect(columnOf([0, 12.5, 784.9041])).toEqual(['0.000', '12.500', '784.904']);
+  expect(columnOf([-0.5, Number.NaN])).toEqual(['−0.500000', '–']);
+  expect(columnOf([1.225, 2.2e-8])).toEqual(['1.2250e0', '2.2000e−8']);
+  expect(columnOf([0, 0])).toEqual(['0.00000', '0.00000']);
 });
 
 it('a length in km is to the millimetre', () => {

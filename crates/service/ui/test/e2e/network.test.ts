@@ -1,0 +1,127 @@
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, beforeEach, describe, expect, it } from 'vitest';
+import { toFragment } from '../../src/link';
+import { example, figure, launch, open, type Service, serve } from './browser';
+import { type Network, networkTo } from './proxy';
+
+let service: Service;
+let browser: Browser;
+let network: Network;
+
+beforeAll(async () => {
+  [service, browser] = await Promise.all([serve(), launch()]);
+  network = await networkTo(service.address);
+});
+
+beforeEach(() => {
+  Object.assign(network, { delay: 0, refuse: () => null });
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await network?.stop();
+  await service?.stop();
+});
+
+async function on(name: string): Promise<Page> {
+  return (await open(browser, `${network.address}/${await toFragment(example(name))}`)).page;
+}
+
+/** Drags the slider of the mass to and fro for so long, ms; so often the flight changed meanwhile, from the first change to the last. */
+async function dragged(page: Page, duration: number): Promise<{ perSecond: number }> {
+  const box = await page.locator('#slider-vehicle-mass').boundingBox();
+  if (!box) throw new Error('the slider has no place');
+  await page.locator('[data-figure="Time"]').evaluate((element) => {
+    const counted = window as unknown as { changes: number[] };
+    counted.changes = [];
+    const count = () => counted.changes.push(performance.now());
+    new MutationObserver(count).observe(element, { characterData: true, childList: true, subtree: true });
+  });
+  const middle = box.y + box.height / 2;
+  const began = performance.now();
+  await page.mouse.move(box.x + box.width / 3, middle);
+  await page.mouse.down();
+  for (let time = 0; time < duration; time = performance.now() - began) {
+    await page.mouse.move(box.x + box.width * (0.35 + 0.3 * Math.sin(time / 700)), middle);
+    await page.waitForTimeout(15);
+  }
+  const changes = await page.evaluate(() => (window as unknown as { changes: number[] }).changes);
+  await page.mouse.up();
+  const [first = 0, last = 0] = [changes[0], changes.at(-1)];
+  return { perSecond: (1e3 * (changes.length - 1)) / (last - first) };
+}
+
+describe('over a network of 120 ms there and back', () => {
+  // Tried again, as a machine with other work may be too slow for the browser.
+  it('a slider moves the flight at least six times a second, and no request is given up', { retry: 2 }, async () => {
+    const page = await on('target_2');
+    const failed: string[] = [];
+    page.on('requestfailed', (request) => failed.push(request.url()));
+    network.delay = 120;
+    expect((await dragged(page, 4000)).perSecond).toBeGreaterThanOrEqual(6);
+    expect(failed).toEqual([]);
+    await page.close();
+  });
+
+  it('the flight is that of the last place of the slider', async () => {
+    const page = await on('target_2');
+    network.delay = 120;
+    await dragged(page, 500);
+    await page.waitForTimeout(1000);
+    const shown = await figure(page, 'Time');
+    await page.reload();
+    await expect.poll(() => figure(page, 'Time')).toBe(shown);
+    await page.close();
+  });
+});
+
+it('a slider asks for fewer rows than the flight has at rest, and for no column that is not drawn', async () => {
+  const page = await on('lifting_capsule');
+  const asked: { columns?: string[]; samples_per_step?: number }[] = [];
+  page.on('request', (request) => {
+    if (request.url().endsWith('/simulate')) asked.push(request.postDataJSON().output);
+  });
+  network.answers = [];
+  await dragged(page, 1000);
+  await page.waitForTimeout(600);
+  const [moving, resting] = [asked.at(-2), asked.at(-1)];
+  expect(moving?.columns).toContain('load_factor');
+  expect(moving?.columns).not.toContain('inertial_speed');
+  expect(resting?.samples_per_step).toBeGreaterThan(moving?.samples_per_step as number);
+  const sizes = network.answers.map(({ bytes }) => bytes);
+  expect(Math.max(...sizes.slice(1, -1))).toBeLessThan(30_000);
+  await page.close();
+});
+
+it('a quantity whose plot is added is asked for, and is in flights that were pinned before', async () => {
+  const page = await on('lifting_capsule');
+  await page.getByRole('button', { name: 'Pin this flight' }).click();
+  await page.locator('#field\\/vehicle\\/mass').fill('7000');
+  await page.waitForTimeout(800);
+  await page.getByLabel('Add a plot').selectOption('inertial_speed');
+  const card = page.locator('.plot-card', { hasText: 'Inertial speed' });
+  await page.locator('#instant').focus();
+  await page.keyboard.press('ArrowRight');
+  await expect.poll(() => card.locator('.reading').allTextContents()).toEqual([expect.stringMatching(/^79/), expect.stringMatching(/^79/)]);
+  await page.close();
+});
+
+it.each([
+  ['is busy', { status: 503, headers: { 'retry-after': '1' } }, 'The service is busy'],
+  ['is asked too often', { status: 429, headers: { 'retry-after': '1' } }, 'The service is busy'],
+  ['is away for a moment', { status: 502 }, 'The service does not answer'],
+])('where the service %s the last flight stays, and the next comes by itself', async (_, refusal, told) => {
+  const page = await on('target_2');
+  const before = await figure(page, 'Time');
+  let refused = 0;
+  network.refuse = () => (refused++ < 2 ? refusal : null);
+  const began = performance.now();
+  await page.locator('#field\\/vehicle\\/mass').fill('750');
+  await page.getByText(told).waitFor();
+  expect(await page.locator('.cards.stale, .notice').count()).toBe(0);
+  expect(await figure(page, 'Time')).toBe(before);
+  await expect.poll(() => figure(page, 'Time'), { timeout: 10_000 }).not.toBe(before);
+  expect(performance.now() - began).toBeGreaterThan(1900);
+  expect(await page.locator('.waiting').textContent()).toBe('');
+  await page.close();
+});
