@@ -155,7 +155,7 @@ async fn the_echo_flown_again_gives_the_same_answer() {
     let service = Service::new();
     let mut cases: Vec<_> = KINDS.iter().map(|kind| flight(kind)).collect();
     cases.extend(cases.clone().iter().zip(KINDS).map(|(case, _)| without(case, "/initial_state/sidereal_time")));
-    for text in ["target_1", "target_2", "impulse", "lifting_capsule"] {
+    for text in ["deorbit", "lifting_capsule", "sample_return", "target_1", "target_2", "impulse"] {
         let file = format!("{}/../openapi/examples/{text}.json", env!("CARGO_MANIFEST_DIR"));
         cases.push(reentry_tests::cases::read_json(file.as_ref()));
     }
