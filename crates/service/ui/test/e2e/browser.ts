@@ -55,6 +55,8 @@ export interface Opened {
 export async function open(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<Opened> {
   const context = await browser.newContext({
     viewport: { width: 1440, height: 1000 },
+    // Whatever that of the machine is: in that of POSIX the headless shell has a name for it that its own `Intl` refuses.
+    locale: 'en-US',
     permissions: ['clipboard-read', 'clipboard-write'],
     ...options,
   });
