@@ -1,5 +1,5 @@
-# `make` lists the recipes. They need Rust, Node 20, Python 3.11, make and a C compiler; other tools come into $(TARGET)/venv
-# and $(UI)/node_modules.
+# `make` lists the recipes. They need Rust, Node 20, Python 3.11, make and a C compiler; other tools come into $(TARGET) and
+# $(UI)/node_modules, by npm and tests/setup.
 
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
@@ -14,7 +14,7 @@ PAGE_SOURCES := $(shell find $(UI)/src $(UI)/build openapi/openapi.json openapi/
 	$(addprefix $(UI)/,index.html package.json tsconfig.json vite.config.ts)
 
 .DELETE_ON_ERROR:
-.PHONY: help run build ui test check openapi validation air theory bench load fuzz
+.PHONY: help run build ui test check openapi validation air theory bench load fuzz browser
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -35,13 +35,14 @@ $(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
 	cd $(UI) && npm ci --no-audit --no-fund
 
 # The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped.
-test: build $(VENV)/ready ## Run all tests
+test: browser $(VENV)/ready build ## Run all tests
 	cd $(UI) && npm test
 	cargo test --locked --workspace
 	REENTRY=$(TARGET)/release/reentry OVERLOAD=$(TARGET)/debug/examples/overload $(VENV)/bin/python -B -m pytest tests/live
-	cd $(UI) && REENTRY=$(abspath $(TARGET))/release/reentry npm run e2e
+	cd $(UI) && REENTRY=$(abspath $(TARGET))/release/reentry CHROMIUM=$(abspath $(TARGET))/chromium/run npm run e2e
 
 check: ui $(VENV)/ready ## Check form, lints, types, documentation, licences of dependencies, and the Dockerfile
+	tests/setup rust
 	cd $(UI) && npm run check && npx tsc
 	cargo fmt --all --check
 	cargo clippy --locked --workspace --all-targets -- -D warnings
@@ -86,6 +87,8 @@ theory: ## Print how near the analytic theories come to the simulation
 	cargo run --quiet --locked --package reentry-tests --example theory
 
 $(VENV)/ready: tests/live/requirements.txt
-	python3 -m venv --clear $(VENV)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check --requirement $<
-	touch $@
+	tests/setup python
+
+# Looked for anew every time, since it may be one of the system, or the one that CHROMIUM names.
+browser: $(UI)/node_modules/.package-lock.json
+	tests/setup chromium

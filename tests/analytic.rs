@@ -1,15 +1,15 @@
 //! Theory beside simulation: the thesis's figures, and each solution against the equations that it solves.
 
+use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-use reentry::analytic::{Comparison, End, Fault, Prediction, Solution, Theory};
+use reentry::analytic::{AnalyticError, Comparison, End, Fault, Prediction, Solution, Theory};
 use reentry::trajectory::{FlightPoint, Sampling, Termination};
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Stop, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, in_vacuum, random_entry, target_2, vehicle};
+use crate::flights::{config, fly, in_vacuum, random_entry, target_2, vehicle};
 
 const ALL: [Solution; 5] =
     [Solution::ShallowGlide, Solution::Loh, Solution::SteepGlide, Solution::SteepBallistic, Solution::MediumGlide];
@@ -415,13 +415,10 @@ fn theories_that_do_not_apply_are_refused_with_every_fault() {
     }
 }
 
-proptest! {
-    // The same flights in every run: the gate must not depend on chance.
-    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, rng_seed: RngSeed::Fixed(1),
-        ..ProptestConfig::default() })]
-
-    #[test]
-    fn a_theory_gives_numbers_within_its_stretch_and_none_outside(case in random_entry(), light in -6.0..0.0) {
+#[test]
+fn a_theory_gives_numbers_within_its_stretch_and_none_outside() {
+    let ends = Cell::new(0);
+    proptest!(config(100), |(case in random_entry(), light in -6.0..0.0)| {
         let Vehicle { mass, reference_area, ref aerodynamics, .. } = case.vehicle;
         for solution in ALL {
             let Aerodynamics::Constant { mut lift_coefficient, drag_coefficient } = *aerodynamics else {
@@ -432,7 +429,14 @@ proptest! {
             }
             let mass = mass * 10_f64.powf(light);
             let case = Case { vehicle: vehicle(mass, reference_area, lift_coefficient, drag_coefficient), ..case.clone() };
-            let Ok(theory) = Theory::new(solution, &Scenario::new(case.clone()).unwrap()) else { continue };
+            let theory = match Theory::new(solution, &Scenario::new(case.clone()).unwrap()) {
+                Ok(theory) => theory,
+                Err(AnalyticError(faults)) => {
+                    let climbs = FlightPath::from_planet_fixed(&case.initial_state).flight_path_angle >= 0.0;
+                    prop_assert!(climbs && matches!(faults[..], [Fault::NoDescent { .. }]), "{solution:?}: {faults:?}");
+                    continue;
+                }
+            };
             let flight = fly(&case);
             let points = flight.points(&flight.instants(&Sampling::PerStep(2), usize::MAX).unwrap());
             let Comparison { predictions, validity } = theory.compare(&flight, &points, &AtomicBool::new(false)).unwrap();
@@ -453,9 +457,11 @@ proptest! {
                 let turns = points[last].flight_path.flight_path_angle * next.flight_path.flight_path_angle <= 0.0;
                 // A vehicle that turns between the rows may end beyond both.
                 prop_assert!(turns || (low.min(high) - 1e-6..=low.max(high) + 1e-6).contains(&end), "{low} {end} {high}");
+                ends.set(ends.get() + 1);
             }
         }
-    }
+    });
+    assert!(ends.get() > 100, "{} of 500 stretches end on the way", ends.get());
 }
 
 /// Where a theory holds is a matter of the flight, not of the rows that are wanted.

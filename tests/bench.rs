@@ -275,7 +275,9 @@ fn heating_and_events() {
             "speed": 10_600, "flight_path_angle": -0.117, "heading": 0.35},
         "control": {"bank_angle": 1.05},
     });
-    for (name, request) in [("TARGET case 2", thesis_request("target_2")), ("a capsule from the Moon", lunar_return)] {
+    for (name, request) in
+        [("TARGET reference case 2", thesis_request("target_2")), ("a capsule from the Moon", lunar_return)]
+    {
         let with = |heating: [&str; 2], events: &[Value]| {
             let mut request = request.clone();
             request["vehicle"]["nose_radius"] = json!(1.0);
@@ -334,7 +336,7 @@ fn event(quantity: &str, way: &str, value: f64) -> Value {
     json!({"when": {"quantity": quantity, (way): value}})
 }
 
-/// TARGET case 2: lanes by the flight, derivatives and verification in plain flights.
+/// TARGET reference case 2: lanes by the flight, derivatives and verification in plain flights.
 fn number_types() {
     let case = scenario("target_2").case().clone();
     let flight = simulate(&Scenario::new(case.clone()).unwrap(), &NEVER).unwrap();
@@ -355,7 +357,7 @@ fn number_types() {
         &mut timed(|| sensitivities(&flight, &NEVER)),
         &mut timed(|| verify(&scenario, &flight, &NEVER)),
     ]);
-    println!("\n| TARGET case 2 | time | over a plain flight |");
+    println!("\n| TARGET reference case 2 | time | over a plain flight |");
     println!("| --- | --- | --- |");
     let line = |what: &str, time: f64, plain: f64| println!("| {what} | {time:.1} µs | {:.2} |", time / plain);
     line("an arrival, one of 256 dispersed ones", alone / 256.0, alone / 256.0);

@@ -58,14 +58,14 @@ pub fn parser(text: &[u8]) {
     }
 }
 
-/// A request for a flight: the answer is good, or names what is wrong with the request.
+/// A request for a flight: the answer is good, or names what is wrong with the request. True where it is answered.
 ///
 /// A letter before it asks for another format: `c`, `g`, `k` and `z` for CSV, `GeoJSON`, KML and CZML; `a` asks `/analytic`, and `b` for CSV
 /// there.
 ///
 /// # Panics
 /// When the answer is neither.
-pub fn simulate(input: &[u8]) {
+pub fn simulate(input: &[u8]) -> bool {
     let (endpoint, format, text) = match input {
         [b'c', text @ ..] => (Endpoint::Simulate, Format::Csv, text),
         [b'g', text @ ..] => (Endpoint::Simulate, Format::Geojson, text),
@@ -75,23 +75,22 @@ pub fn simulate(input: &[u8]) {
         [b'b', text @ ..] => (Endpoint::Analytic, Format::Csv, text),
         text => (Endpoint::Simulate, Format::Json, text),
     };
-    let Ok(tree) = parse(text) else { return };
+    let Ok(tree) = parse(text) else { return false };
     if endpoint.is_long(&tree) {
-        return;
+        return false;
     }
     let bytes = match endpoint.answer(tree.clone(), format) {
         Ok(bytes) => bytes,
-        Err(error) => return refused(&error, &tree),
+        Err(error) => {
+            refused(&error, &tree);
+            return false;
+        }
     };
     match format {
         Format::Json => {
             let answer = strict(&bytes, &tree);
             valid(endpoint.schema(), &answer, &tree);
-            for rows in
-                ["trajectory", "simulated", "predicted", "difference"].iter().filter_map(|rows| answer.get(rows))
-            {
-                equally_long(rows, &tree);
-            }
+            equally_long(&endpoint.rows(&answer), &tree);
             if let Some(case) = answer.get("case") {
                 let again = strict(&good(endpoint.answer(case.clone(), format), &tree), &tree);
                 assert_eq!(without_computing_time(again), without_computing_time(answer), "{tree}");
@@ -101,17 +100,22 @@ pub fn simulate(input: &[u8]) {
         Format::Geojson | Format::Czml => drop(strict(&bytes, &tree)),
         Format::Kml | Format::Ndjson => drop(good(String::from_utf8(bytes), &tree)),
     }
+    true
 }
 
-/// A request for a conversion: what it answers can be sent back, whichever of its states, and is then the same state.
+/// A request for a conversion: what it answers can be sent back, whichever of its states, and is then the same state. True where it is
+/// answered.
 ///
 /// # Panics
 /// When that does not hold, or nothing of the request is named by a refusal.
-pub fn convert(text: &[u8]) {
-    let Ok(tree) = parse(text) else { return };
+pub fn convert(text: &[u8]) -> bool {
+    let Ok(tree) = parse(text) else { return false };
     let bytes = match converted(tree.clone()) {
         Ok(bytes) => bytes,
-        Err(error) => return refused(&error, &tree),
+        Err(error) => {
+            refused(&error, &tree);
+            return false;
+        }
     };
     let answer = strict(&bytes, &tree);
     valid(&CONVERT, &answer, &tree);
@@ -142,6 +146,7 @@ pub fn convert(text: &[u8]) {
             assert!(length(&off) <= allowed, "{kind}: {vector} is off by {off}, {allowed} is allowed, in {tree}");
         }
     }
+    true
 }
 
 fn converted(tree: Value) -> Result<Vec<u8>, ApiError> {
@@ -174,7 +179,8 @@ fn length(vector: &Value) -> f64 {
 }
 
 fn numbers(list: &Value) -> Vec<f64> {
-    list.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+    let numbers = list.as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
+    numbers.unwrap_or_else(|| panic!("{list} is no list of numbers"))
 }
 
 /// What flies.
@@ -204,6 +210,14 @@ impl Endpoint {
         let solver = Solver { step_limit: STEP_LIMIT, ..case.solver };
         let short = Scenario::new(Case { solver, ..case }).map(|short| arrival(&short, &NEVER));
         matches!(short, Ok(Err(SimulationError::StepLimit { .. })))
+    }
+
+    /// The tables of an answer. That of a flight is there where it was asked for, those of a theory always.
+    fn rows(self, answer: &Value) -> Vec<&Value> {
+        match self {
+            Self::Simulate => answer.get("trajectory").into_iter().collect(),
+            Self::Analytic => ["simulated", "predicted", "differences"].map(|rows| &answer[rows]).into(),
+        }
     }
 
     fn schema(self) -> &'static Validator {
@@ -239,13 +253,19 @@ fn valid(schema: &Validator, answer: &Value, request: &Value) {
     }
 }
 
-/// The columns of rows have as many entries each, and their times increase.
-fn equally_long(rows: &Value, request: &Value) {
-    let columns = rows.as_object().into_iter().flatten();
-    let lengths: Vec<_> = columns.map(|(_, column)| column.as_array().map(Vec::len)).collect();
+/// All columns of all tables have as many entries, and times increase.
+fn equally_long(tables: &[&Value], request: &Value) {
+    let mut lengths = Vec::new();
+    for table in tables {
+        for (name, column) in table.as_object().unwrap_or_else(|| panic!("{table} is no table, for {request}")) {
+            lengths.push(column.as_array().map(Vec::len));
+            if name == "time" {
+                let times = numbers(column);
+                assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?} for {request}");
+            }
+        }
+    }
     assert!(lengths.windows(2).all(|pair| pair[0] == pair[1]), "{lengths:?} for {request}");
-    let times = numbers(&rows["time"]);
-    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?} for {request}");
 }
 
 fn without_computing_time(mut answer: Value) -> Value {

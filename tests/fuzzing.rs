@@ -1,5 +1,7 @@
 //! The corpus of the fuzz targets, and random requests, held to what the fuzz targets ask (`reentry_tests::fuzzed`).
 
+use std::cell::Cell;
+
 use proptest::prelude::*;
 use reentry_tests::fuzzed;
 use reentry_tests::mutation::{LETTERS, Mutator, corpus};
@@ -15,27 +17,38 @@ fn the_parser_holds_on_its_corpus() {
 
 #[test]
 fn flights_hold_on_their_corpus() {
-    for input in corpus("simulate") {
-        fuzzed::simulate(&input);
-    }
+    let corpus = corpus("simulate");
+    many(corpus.iter().filter(|input| fuzzed::simulate(input)).count(), corpus.len());
 }
 
 #[test]
 fn conversions_hold_on_their_corpus() {
-    for input in corpus("convert") {
-        fuzzed::convert(&input);
-    }
+    let corpus = corpus("convert");
+    many(corpus.iter().filter(|input| fuzzed::convert(input)).count(), corpus.len());
 }
 
 #[test]
 fn random_requests_are_answered_or_refused() {
+    const CASES: u32 = 1000;
     let (flights, conversions) = (Mutator::new("/simulate", "simulate"), Mutator::new("/convert", "convert"));
-    proptest!(config(1000), |(seed: u64)| {
+    let answered = Cell::new(0);
+    proptest!(config(CASES), |(seed: u64)| {
         let flight = flights.request(seed).to_string().into_bytes();
         fuzzed::parser(&flight);
-        fuzzed::simulate(&flight);
         let letter = LETTERS[usize::from(flight[flight.len() / 2]) % LETTERS.len()];
-        fuzzed::simulate(&[&[letter], &flight[..]].concat());
-        fuzzed::convert(conversions.request(seed).to_string().as_bytes());
+        let conversion = conversions.request(seed).to_string().into_bytes();
+        let asked = [
+            fuzzed::simulate(&flight),
+            fuzzed::simulate(&[&[letter], &flight[..]].concat()),
+            fuzzed::convert(&conversion),
+        ];
+        answered.set(answered.get() + asked.iter().filter(|answered| **answered).count());
     });
+    many(answered.get(), 3 * CASES as usize);
+}
+
+/// A refusal is held to less than an answer. Of random requests one in eleven is answered, of the corpora every other.
+#[track_caller]
+fn many(answered: usize, asked: usize) {
+    assert!(answered * 20 > asked, "{answered} of {asked} requests are answered");
 }

@@ -222,6 +222,7 @@ pub fn corpus(target: &str) -> Vec<Vec<u8>> {
     let listed = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut files: Vec<_> = listed.flatten().map(|file| file.path()).collect();
     files.sort();
+    assert!(!files.is_empty(), "{} is empty", folder.display());
     let read = |file| fs::read(file).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     files.iter().map(read).collect()
 }

@@ -244,19 +244,14 @@ fn random_models() -> impl Strategy<Value = Case> {
 proptest! {
     #![proptest_config(config(40))]
 
-    /// The equations of the thesis, with forces of any direction, against those in planet-fixed coordinates.
+    /// The equations of the thesis, with forces of any direction, against those in planet-fixed coordinates; none of these flights comes near
+    /// a singularity of the former.
     #[test]
     fn twin_formulations_agree_under_every_model(case in random_models()) {
         let cartesian = fly(&with_tolerance(case.clone(), 1e-12));
-        let spherical = reentry::simulate(
-            &reentry::Scenario::new(spherical(with_tolerance(case, 1e-12))).unwrap(),
-            &std::sync::atomic::AtomicBool::new(false),
-        );
-        // Near its singularities the spherical one gives up by name.
-        if let Ok(spherical) = spherical {
-            prop_assert_eq!(cartesian.termination(), spherical.termination());
-            prop_assert!(miss(&cartesian, &spherical) < 0.01, "{} m", miss(&cartesian, &spherical));
-        }
+        let spherical = fly(&spherical(with_tolerance(case, 1e-12)));
+        prop_assert_eq!(cartesian.termination(), spherical.termination());
+        prop_assert!(miss(&cartesian, &spherical) < 0.01, "{} m", miss(&cartesian, &spherical));
     }
 
     #[test]

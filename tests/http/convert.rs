@@ -123,7 +123,8 @@ async fn every_representation_can_be_sent_back() {
                 let request = json!({"angle_unit": unit, "planet": planet, "state": state});
                 let answer = good_answer(&service, "/convert", &request).await;
                 for kind in KINDS {
-                    if answer[kind].is_null() {
+                    // What does not move along an ellipse or a hyperbola has no elements; it has all else.
+                    if kind == "orbital_elements" && answer[kind].is_null() {
                         continue;
                     }
                     assert_eq!(answer[kind]["type"], kind);

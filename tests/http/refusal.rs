@@ -1,5 +1,7 @@
 //! What every refusal looks like, and that the service is afterwards as good as before.
 
+use std::collections::BTreeSet;
+
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
 use reentry_service::config::Config;
@@ -9,13 +11,14 @@ use serde_json::{Value, json};
 use super::requests::{conversion, flight};
 
 /// The whole list of problems: type, title, status.
-const PROBLEMS: [(&str, &str, u16); 18] = [
+const PROBLEMS: [(&str, &str, u16); 21] = [
     ("/problems/invalid-json", "Not JSON", 400),
     ("/problems/invalid-query", "Invalid query string", 400),
     ("/problems/unreadable-body", "Unreadable body", 400),
     ("/problems/not-found", "Not found", 404),
     ("/problems/method-not-allowed", "Method not allowed", 405),
     ("/problems/not-acceptable", "Not acceptable", 406),
+    ("/problems/request-timeout", "Body too slow", 408),
     ("/problems/payload-too-large", "Payload too large", 413),
     ("/problems/unsupported-media-type", "Unsupported media type", 415),
     ("/problems/invalid-case", "Not a valid case", 422),
@@ -26,9 +29,19 @@ const PROBLEMS: [(&str, &str, u16); 18] = [
     ("/problems/chattering-schedule", "Schedule undoes itself", 422),
     ("/problems/no-mass-left", "No mass left", 422),
     ("/problems/overflow", "Loads out of range", 422),
+    ("/problems/too-many-requests", "Too many requests", 429),
+    ("/problems/internal", "Internal error", 500),
     ("/problems/busy", "Busy", 503),
     ("/problems/deadline-exceeded", "Out of time", 504),
 ];
+
+/// Those that the program may give: its table is a `match`, of which only the source has the whole.
+#[test]
+fn every_problem_of_the_program_is_listed() {
+    let source = include_str!("../../crates/service/src/error.rs");
+    let of_program: BTreeSet<_> = source.split('"').filter(|text| text.starts_with("/problems/")).collect();
+    assert_eq!(of_program, PROBLEMS.iter().map(|(kind, ..)| *kind).collect());
+}
 
 /// A service that must answer good requests after every bad one as if nothing had happened.
 pub(crate) struct Steady {
@@ -93,7 +106,7 @@ pub(crate) fn problem(answer: &Answer) -> Value {
     assert_eq!(problem["title"], *title, "{text}");
     assert_eq!(problem["status"], *status, "{text}");
     assert_eq!(answer.status, StatusCode::from_u16(*status).unwrap(), "{text}");
-    assert_eq!(answer.headers.contains_key(header::RETRY_AFTER), *status == 503, "{text}");
+    assert_eq!(answer.headers.contains_key(header::RETRY_AFTER), [429, 503].contains(status), "{text}");
 
     let mut names: Vec<_> = problem.as_object().unwrap().keys().map(String::as_str).collect();
     if names.last() == Some(&"errors") {

@@ -205,7 +205,7 @@ def test_a_list_of_cases_with_events_has_their_columns_and_a_case_without_them_f
     assert "events" not in lines[1]
     result = run("simulate", path := file([eventful, CASE, eventful]), "--format", "csv")
     assert result.returncode == 1
-    assert result.stderr.startswith(f'reentry: {path}: case 1 "TARGET case 1": Not a valid case: the request has 1 fault\n  /output/columns: ')
+    assert result.stderr.startswith(f'reentry: {path}: case 1 "TARGET reference case 1": Not a valid case: the request has 1 fault\n  /output/columns: ')
     rows = list(csv.reader(io.StringIO(result.stdout)))
     assert rows[0][0] == "case"
     assert rows[0][-3:] == ["heat_load", "wall_temperature", "mass"]

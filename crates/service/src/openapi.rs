@@ -447,26 +447,29 @@ fn name_constants(value: &mut Value) {
 fn add_examples(paths: &mut Map<String, Value>) {
     let example = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
     let simulate = json!({
-        "target_1": {"summary": "TARGET case 1: a fast ballistic projectile, from orbital elements",
-            "value": example(include_str!("../../../openapi/examples/target_1.json"))},
-        "target_2": {"summary": "TARGET case 2: a banked, lifting vehicle",
-            "value": example(include_str!("../../../openapi/examples/target_2.json"))},
-        "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
-            "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
         "deorbit": {"summary": "A capsule comes down from orbit: a burn, the heat of entry, parachutes",
             "value": example(include_str!("../../../openapi/examples/deorbit.json"))},
-        "impulse": {"summary": "IMPULSE: a missile's vehicle after burnout, from inertial vectors",
+        "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
+            "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
+        "sample_return": {"summary": "A sample capsule returns from a comet: from the inertial state at entry, with heating and parachutes",
+            "value": example(include_str!("../../../openapi/examples/sample_return.json"))},
+        "target_1": {"summary": "TARGET reference case 1, of the thesis: steep and fast, from orbital elements",
+            "value": example(include_str!("../../../openapi/examples/target_1.json"))},
+        "target_2": {"summary": "TARGET reference case 2, of the thesis: a banked, lifting vehicle",
+            "value": example(include_str!("../../../openapi/examples/target_2.json"))},
+        "impulse": {"summary": "IMPULSE reference case, of the thesis: from inertial vectors",
             "value": example(include_str!("../../../openapi/examples/impulse.json"))},
     });
     let convert = json!({
-        "impulse": {"summary": "The burnout state of IMPULSE", "value": example(include_str!("../../../openapi/examples/impulse_state.json"))},
+        "impulse": {"summary": "The initial state of the IMPULSE reference case",
+            "value": example(include_str!("../../../openapi/examples/impulse_state.json"))},
     });
     let analytic = json!({
         "steep_ballistic": {"summary": "A small vehicle falls steeply from 400 km: the straight line of the ballistic theory",
             "value": example(include_str!("../../../openapi/examples/steep_ballistic.json"))},
     });
     let batch = json!({
-        "list": {"summary": "Two cases", "value": [simulate["target_1"]["value"], simulate["impulse"]["value"]]},
+        "list": {"summary": "Two cases", "value": [simulate["deorbit"]["value"], simulate["sample_return"]["value"]]},
     });
     for (path, examples) in
         [("/simulate", simulate), ("/simulate/batch", batch), ("/convert", convert), ("/analytic", analytic)]

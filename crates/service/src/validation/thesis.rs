@@ -48,7 +48,7 @@ fn flight(program: Program, case: &ThesisCase) -> Result<[Check; 3], ApiError> {
     ])
 }
 
-/// The table of the thesis and the name of the case, of a title such as "Jameson 2006, Table 1: TARGET case 1, a fast one".
+/// The table of the thesis and the name of the case, of a title such as "Jameson 2006, Table 1: TARGET reference case 1, a fast one".
 pub(super) fn named(title: &str) -> String {
     let title = title.trim_start_matches("Jameson 2006, ");
     title.split(',').next().unwrap_or(title).to_owned()

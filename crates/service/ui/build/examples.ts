@@ -32,7 +32,7 @@ export function examples(): Plugin {
     name: 'examples',
     resolveId: (id) => (id === 'virtual:examples' ? '\0virtual:examples' : undefined),
     load: (id) =>
-      id === '\0virtual:examples' ? `export default ${JSON.stringify([...own(), ...thesis(), ...flown(), ...checks()])}` : undefined,
+      id === '\0virtual:examples' ? `export default ${JSON.stringify([...own(), ...flown(), ...thesis(), ...checks()])}` : undefined,
   };
 }
 

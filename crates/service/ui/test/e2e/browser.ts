@@ -8,7 +8,7 @@ import type { Case } from '../../src/api';
 
 export const ROOT = new URL('../../../../../', import.meta.url);
 const PROGRAM = process.env.REENTRY ?? new URL('target/release/reentry', ROOT).pathname;
-const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const CHROMIUM = process.env.CHROMIUM ?? new URL('target/chromium/run', ROOT).pathname;
 
 /** The program, on a port of its own. */
 export interface Service {
@@ -39,7 +39,7 @@ export async function serve(): Promise<Service> {
   };
 }
 
-/** Debian's Chromium. */
+/** The Chromium that `tests/setup` found, or another one. */
 export function launch(): Promise<Browser> {
   return chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--disable-quic'] });
 }
@@ -55,6 +55,8 @@ export interface Opened {
 export async function open(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<Opened> {
   const context = await browser.newContext({
     viewport: { width: 1440, height: 1000 },
+    // Whatever that of the machine is: in that of POSIX the headless shell has a name for it that its own `Intl` refuses.
+    locale: 'en-US',
     permissions: ['clipboard-read', 'clipboard-write'],
     ...options,
   });

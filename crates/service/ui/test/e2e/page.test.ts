@@ -230,7 +230,7 @@ describe('taken along', () => {
   it('the CSV that is downloaded is that of the API', async () => {
     const { page } = await on(example('target_1'));
     const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'CSV' }).click()]);
-    expect(download.suggestedFilename()).toBe('TARGET_case_1.csv');
+    expect(download.suggestedFilename()).toBe('TARGET_reference_case_1.csv');
     const stream = await download.createReadStream();
     let text = '';
     for await (const chunk of stream) text += chunk;
