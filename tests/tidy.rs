@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const CORE: [&[&str]; 11] = [
     &["scalar", "root"],
     &["integrate", "interpolation"],
-    &["planet", "atmosphere", "vehicle", "control", "propulsion", "heating"],
+    &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
     &["event"],
     &["coordinates"],
     &["wind"],

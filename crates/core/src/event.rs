@@ -1,5 +1,6 @@
 //! Events: what happens once in a flight, when a quantity passes a value.
 
+use crate::parachute::Parachute;
 use crate::propulsion::{Impulse, Thrust};
 use crate::scalar::Scalar;
 use crate::vehicle::Aerodynamics;
@@ -137,6 +138,10 @@ pub struct Effect {
     pub impulse: Option<Impulse>,
     /// The engine.
     pub engine: Option<Engine>,
+    /// The parachutes that are cut off, each by the number of the event that deploys it; one that is not there stays away.
+    pub release: Vec<usize>,
+    /// A parachute that is deployed, after those that are cut off.
+    pub deploy: Option<Parachute>,
 }
 
 /// What becomes of the thrust.

@@ -70,6 +70,7 @@ pub mod atmosphere;
 pub mod control;
 pub mod event;
 pub mod heating;
+pub mod parachute;
 pub mod planet;
 pub mod propulsion;
 pub mod vehicle;

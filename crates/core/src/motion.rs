@@ -5,6 +5,7 @@ mod directions;
 mod loads;
 mod quantity;
 mod regime;
+mod rest;
 mod spherical;
 
 pub use cartesian::Cartesian;
@@ -24,15 +25,19 @@ use crate::coordinates::PlanetFixed;
 use crate::heating::{HeatFlux, Stagnation};
 use crate::integrate::Pace;
 use crate::interpolation::Hint;
+use crate::parachute::Canopies;
 use crate::planet::{Gravity, Planet};
 use crate::propulsion::Axis;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
-use directions::{Directions, lift_fade_over_cosine};
+use directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
 
 /// Within this angle of the vertical the lift fades out, rad: in vertical flight the bank angle has no meaning.
 pub const LIFT_FADE_ANGLE: f64 = 1e-3;
+
+/// Within this angle of a pole, seen from the planet's centre, the wind fades out, rad: at the pole there is neither east nor north.
+pub const WIND_FADE_ANGLE: f64 = 1e-3;
 
 /// Scale heights that a step may fall; see [`Forces::longest_step`].
 const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
@@ -49,6 +54,7 @@ pub struct Forces<P = f64> {
     mass: P,
     sin_cos_bank: (P, P),
     burn: Option<Burn<P>>,
+    canopies: Option<Canopies<P>>,
     regime: Regime,
     has_switches: bool,
     /// Whether all models are those of the thesis. Functions with a constant `THESIS` know it when they are compiled, so that what
@@ -211,7 +217,8 @@ impl<P: Scalar> Forces<P> {
         let sin_cos_bank = parameters.bank_angle.sin_cos();
         let by_mach = models.depend_on_mach();
         let of_thesis = models.are_of_thesis();
-        let (burn, regime, has_switches, cells) = (None, Regime::default(), false, Cells::default());
+        let (burn, canopies) = (None, None);
+        let (regime, has_switches, cells) = (Regime::default(), false, Cells::default());
         let mut forces = Self {
             models,
             parameters,
@@ -219,6 +226,7 @@ impl<P: Scalar> Forces<P> {
             mass: parameters.mass,
             sin_cos_bank,
             burn,
+            canopies,
             regime,
             has_switches,
             of_thesis,
@@ -239,6 +247,12 @@ impl<P: Scalar> Forces<P> {
     #[must_use]
     pub fn burning(self, burn: Option<Burn<P>>) -> Self {
         Self { of_thesis: self.of_thesis && burn.is_none(), burn, ..self }
+    }
+
+    /// The same forces with the drag of parachutes, if there are any open.
+    #[must_use]
+    pub fn under(self, canopies: Option<Canopies<P>>) -> Self {
+        Self { of_thesis: self.of_thesis && canopies.is_none(), canopies, ..self }
     }
 
     /// The acceleration relative to the rotating planet, m/s².
@@ -310,12 +324,12 @@ impl<P: Scalar> Forces<P> {
     ///
     /// # Reference
     /// K. D. Hicks, Introduction to Astrodynamic Reentry, 2006, page 58, to which Jameson 2006 points in its last chapter: the thrust
-    /// stands beside lift and drag; here it is constant and along one of three directions.
+    /// stands beside lift and drag; here it is constant and along one of a few directions.
     #[inline(always)]
     fn thrust<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Option<Vector3<S>> {
         let burn = self.burn.as_ref()?;
         let acceleration = burn.lightness(time) * burn.acceleration;
-        Some(along(burn.along, state) * acceleration)
+        Some(along(burn.along, &self.models.planet, time, state) * acceleration)
     }
 
     /// Lift and drag over the mass, m/s².
@@ -354,9 +368,12 @@ impl<P: Scalar> Forces<P> {
             }
             Some([east, north]) => {
                 let [x, y, z] = [position.x, position.y, position.z];
-                // ẑ × r, of the length of the distance from the axis; at the poles, where there is no east, there is no wind.
-                let over_equatorial = reciprocal_or_one((x * x + y * y).sqrt());
+                // ẑ × r, of the length of the distance from the axis.
+                let equatorial = (x * x + y * y).sqrt();
+                let over_equatorial = reciprocal_or_one(equatorial);
                 let over_radius = reciprocal_or_one(length(position));
+                let fade = wind_fade(equatorial * over_radius);
+                let [east, north] = [east * fade, north * fade];
                 let east = Vector3::new(-y, x, S::zero()) * (over_equatorial * east);
                 let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
                 let north = to_north * (over_equatorial * over_radius * north);
@@ -415,18 +432,25 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn air<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Air<S> {
         let speed = flow.directions.speed;
-        let acceleration = speed * speed * 0.5 * self.area_over_mass;
-        let acceleration = match &self.burn {
-            Some(burn) if !THESIS => acceleration * burn.lightness(time),
-            _ => acceleration,
+        let pressure = speed * speed * 0.5;
+        let over_mass = |force_over_mass: S| match &self.burn {
+            Some(burn) if !THESIS => force_over_mass * burn.lightness(time),
+            _ => force_over_mass,
         };
+        let acceleration = over_mass(pressure * self.area_over_mass);
         let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
-        match self.coefficients::<THESIS, _>(time, flow) {
+        let mut air = match self.coefficients::<THESIS, _>(time, flow) {
             None => Air { drag: acceleration * drag_coefficient, lift: acceleration * lift_coefficient },
             Some(Coefficients { lift, drag }) => {
                 Air { drag: acceleration * (drag + drag_coefficient), lift: acceleration * (lift + lift_coefficient) }
             }
+        };
+        if let Some(canopies) = &self.canopies
+            && !THESIS
+        {
+            air.drag += over_mass(pressure * canopies.area_over_mass(time));
         }
+        air
     }
 
     /// The coefficients of the model, if they are not all in the parameters.
@@ -528,7 +552,7 @@ impl Forces {
     }
 
     /// The units of length, m, and speed, m/s, in which the equations are of order one: r₀ and √(g₀r₀).
-    fn units(&self) -> [f64; 2] {
+    pub(crate) fn units(&self) -> [f64; 2] {
         let length = self.models.planet.equatorial_radius();
         [length, (self.models.planet.gravitational_parameter / length).sqrt()]
     }
@@ -557,7 +581,8 @@ impl Forces {
 
         let air = self.air::<false, _>(time, &flow);
         let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density::<false, _>(&flow));
-        if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) }
+        let longest = if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) };
+        longest.min(self.longest_braking(time, state))
     }
 
     /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.
@@ -573,24 +598,29 @@ impl Forces {
     }
 }
 
-/// A direction in a state, of length 1; of length 0 where there is none, and shorter than 1 across the velocity near the vertical.
+/// A direction in a state at a time, s, of length 1; of length 0 where there is none, and shorter than 1 near the vertical where there is
+/// none in vertical flight.
 #[inline(always)]
-pub(crate) fn along<S: Scalar>(axis: Axis, state: &PlanetFixed<S>) -> Vector3<S> {
+pub(crate) fn along<S: Scalar>(axis: Axis, planet: &Planet, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
     let Directions { up, ahead, left, cos_gamma, .. } = Directions::of(&state.position, &state.velocity);
     match axis {
         Axis::Velocity => ahead,
         Axis::Radial => up,
         Axis::Normal => left * lift_fade_over_cosine(cos_gamma),
+        Axis::Horizontal => left.cross(&up) * lift_fade_over_cosine(cos_gamma),
+        Axis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
     }
 }
 
-/// A direction in a state, of length 1, if there is one.
-pub(crate) fn direction(axis: Axis, state: &PlanetFixed<f64>) -> Option<Vector3<f64>> {
+/// A direction in a state at a time, s, of length 1, if there is one.
+pub(crate) fn direction(axis: Axis, planet: &Planet, time: f64, state: &PlanetFixed<f64>) -> Option<Vector3<f64>> {
     let Directions { up, ahead, left, .. } = Directions::of(&state.position, &state.velocity);
     match axis {
         Axis::Velocity => ahead,
         Axis::Radial => up,
         Axis::Normal => left,
+        Axis::Horizontal => left.cross(&up),
+        Axis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
     }
     .try_normalize(NO_DIRECTION)
 }

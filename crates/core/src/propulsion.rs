@@ -1,10 +1,12 @@
 //! Propulsion: impulses, and a constant thrust that burns propellant.
 
+use nalgebra::{UnitVector3, Vector3};
+
 /// The unit of the load factor and of the specific impulse, m/s²: the standard acceleration of gravity (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// A direction that moves with the vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A direction in which a vehicle is pushed.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
     /// v̂, along the velocity relative to the rotating planet; none at rest.
     Velocity,
@@ -13,6 +15,34 @@ pub enum Axis {
     /// r̂ × v̂ over its length, level and to the left of the flight direction; none at rest and in vertical flight. Within
     /// 0.001 rad of the vertical a thrust along it fades out as lift does.
     Normal,
+    /// (r̂ × v̂) × r̂ over its length, the level part of the velocity relative to the rotating planet; none at rest and in vertical
+    /// flight. Within 0.001 rad of the vertical a thrust along it fades out as lift does.
+    Horizontal,
+    /// A direction that stays where it is in inertial space, while the planet turns; in planet-fixed components at t = 0.
+    Inertial(UnitVector3<f64>),
+}
+
+impl Axis {
+    /// The inertial direction of a vector of any length, in planet-fixed components at t = 0; none of the zero vector.
+    ///
+    /// # Examples
+    /// ```
+    /// use reentry::propulsion::Axis;
+    ///
+    /// assert_eq!(Axis::inertial([3e200, 0.0, 4e200]), Axis::inertial([0.6, 0.0, 0.8]));
+    /// assert_eq!(Axis::inertial([0.0; 3]), None);
+    /// ```
+    pub fn inertial(components: [f64; 3]) -> Option<Self> {
+        let components = Vector3::from(components);
+        // The squares of huge and of tiny components would be none.
+        let greatest = components.amax();
+        (greatest > 0.0).then(|| Self::Inertial(UnitVector3::new_normalize(components / greatest)))
+    }
+
+    /// Whether there is none in vertical flight, near which a thrust along it fades out.
+    pub(crate) fn is_level(self) -> bool {
+        matches!(self, Self::Normal | Self::Horizontal)
+    }
 }
 
 /// A change of velocity at an instant: a burn so short that nothing else happens meanwhile.
@@ -24,21 +54,21 @@ pub struct Impulse {
     pub speed_change: f64,
 }
 
-/// A constant force that is switched on and burns propellant at a constant rate.
+/// A constant force that is switched on, and that may burn propellant at a constant rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thrust {
     /// Where to, at every instant.
     pub along: Axis,
     /// N; negative against the direction.
     pub force: f64,
-    /// The impulse that a unit of propellant's weight at standard gravity gives, s.
-    pub specific_impulse: f64,
-    /// How much there is to burn, kg; without a number, until the thrust is switched off.
+    /// The impulse that a unit of propellant's weight at standard gravity gives, s; without a number, the mass stays.
+    pub specific_impulse: Option<f64>,
+    /// How much there is to burn, kg; without a number, until the thrust is switched off. Only with a specific impulse.
     pub propellant: Option<f64>,
 }
 
 impl Thrust {
-    /// The propellant that is burnt, kg/s.
+    /// The propellant that is burnt, kg/s; none without a specific impulse.
     ///
     /// ```text
     /// ṁ = -|T| / (g₀ I_sp)
@@ -52,10 +82,11 @@ impl Thrust {
     /// use reentry::propulsion::{Axis, Thrust};
     ///
     /// // An exhaust of 3 km/s: a kilogram a second gives 3 kN.
-    /// let thrust = Thrust { along: Axis::Velocity, force: -3000.0, specific_impulse: 3000.0 / 9.806_65, propellant: None };
+    /// let specific_impulse = Some(3000.0 / 9.806_65);
+    /// let thrust = Thrust { along: Axis::Velocity, force: -3000.0, specific_impulse, propellant: None };
     /// assert!((thrust.mass_flow() - 1.0).abs() < 1e-15);
     /// ```
     pub fn mass_flow(&self) -> f64 {
-        self.force.abs() / (STANDARD_GRAVITY * self.specific_impulse)
+        self.specific_impulse.map_or(0.0, |specific_impulse| self.force.abs() / (STANDARD_GRAVITY * specific_impulse))
     }
 }

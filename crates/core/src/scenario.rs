@@ -18,7 +18,6 @@ use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
 use crate::planet::Planet;
-use crate::propulsion::Axis;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
 
@@ -190,6 +189,20 @@ pub enum Fault {
         /// The place of the condition in the [`Case`].
         field: String,
     },
+    /// Propellant for a thrust that burns none.
+    #[error("must be left out: without a specific impulse the thrust burns no propellant")]
+    PropellantUnused {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// A parachute that is never deployed.
+    #[error("must be the number of an event that deploys a parachute, got {event}")]
+    NoParachute {
+        /// Its place in the [`Case`].
+        field: String,
+        /// The number given.
+        event: usize,
+    },
     /// The ceiling lies on the stop altitude or below.
     #[error("must be greater than the stop altitude of {altitude} m, got {ceiling}")]
     LowCeiling {
@@ -256,6 +269,7 @@ impl Scenario {
         faults.extend(state_faults(state));
         faults.extend(case.mach_faults());
         faults.extend(case.condition_faults());
+        faults.extend(case.effect_faults());
         faults.extend((case.heating.is_some() && case.vehicle.nose_radius.is_none()).then_some(Fault::NoNoseRadius));
         if faults.is_empty() {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
@@ -318,7 +332,7 @@ impl Case {
             || effects.clone().any(|effect| effect.reference_area.is_some()) && self.vehicle.aerodynamics.has_lift()
             || effects
                 .filter_map(|effect| effect.engine)
-                .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along == Axis::Normal))
+                .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along.is_level()))
     }
 
     /// Whether anything is watched on the way, beside the stop altitude and the formulas of the models.
@@ -388,6 +402,26 @@ impl Case {
             Command::Schedule(_) => 0.0,
         };
         Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle }
+    }
+
+    /// What is wrong across the effects of events.
+    fn effect_faults(&self) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (index, Event { then, .. }) in self.events.iter().enumerate() {
+            if let Some(Engine::On(thrust)) = then.engine
+                && thrust.propellant.is_some()
+                && thrust.specific_impulse.is_none()
+            {
+                faults.push(Fault::PropellantUnused { field: format!("events.{index}.then.engine.propellant") });
+            }
+            let deploys = |event: usize| self.events.get(event).is_some_and(|event| event.then.deploy.is_some());
+            let unknown = then.release.iter().enumerate().filter(|(_, event)| !deploys(**event));
+            faults.extend(unknown.map(|(place, event)| Fault::NoParachute {
+                field: format!("events.{index}.then.release.{place}"),
+                event: *event,
+            }));
+        }
+        faults
     }
 
     /// What needs a Mach number where there is none.

@@ -14,9 +14,10 @@ use num_dual::{Dual64, DualSVec64, jacobian};
 
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::{FlightPath, GreatCircle, PlanetFixed};
-use crate::event::{Condition, Direction, Effect, Engine, Quantity, Trigger};
+use crate::event::{Condition, Direction, Engine, Quantity, Trigger};
 use crate::integrate::{System, follow};
 use crate::motion::{self, Burn, Cartesian, Forces, Formulation, Moment, Parameters, Regime, Spherical, moving};
+use crate::parachute::{Canopies, Canopy};
 use crate::propulsion::Impulse;
 use crate::scalar::Scalar;
 use crate::scenario::{Case, Equations, Phase};
@@ -93,7 +94,7 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
         Gradient {
             mass: match has.mass {
                 true => mass,
-                false if has.thrust => f64::NAN,
+                false if has.weight => f64::NAN,
                 false => 0.0,
             },
             reference_area: only(has.mass, reference_area),
@@ -123,8 +124,8 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sens
 struct Numbers {
     /// Mass, area and coefficients, and not ratios of them.
     mass: bool,
-    /// Any, by which the mass matters beside the ratios.
-    thrust: bool,
+    /// A thrust or a parachute, by which the mass matters beside the ratios.
+    weight: bool,
     surface_density: Option<f64>,
 }
 
@@ -132,7 +133,7 @@ impl Numbers {
     fn of(case: &Case) -> Self {
         Self {
             mass: !case.vehicle.is_ballistic(),
-            thrust: case.events.iter().any(|event| event.then.engine.is_some()),
+            weight: case.events.iter().any(|event| event.then.engine.is_some() || event.then.deploy.is_some()),
             surface_density: match case.atmosphere {
                 Atmosphere::Exponential { surface_density, .. } => Some(surface_density),
                 Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => None,
@@ -223,18 +224,12 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
             let delay = turning_delay::<F, N>(&stage, &forces, &now, leg.regime, &place, &delays);
             // So long the rates before the turn hold, and not yet those after it.
             state = from_fn(|i| state[i] + place.rates[i] * delay);
-            let before = now.first().map_or(leg.phase, |happening| happening.before.phase);
-            if stage.phase != before {
-                stage = stage.burnt_out(before, delay);
-            }
             for happening in now {
                 delays[happening.event] = delay;
-                stage = stage.after(happening, delay);
-                state = push::<F, N>(&flight.case.events[happening.event].then, &state);
+                stage = stage.changed_by_time(happening.before.phase, delay).after(happening, delay);
+                state = push::<F, N>(flight, happening, delay, &state);
             }
-            if stage.phase != leg.phase {
-                stage = stage.burnt_out(leg.phase, delay);
-            }
+            stage = stage.changed_by_time(leg.phase, delay);
             forces = stage.forces(leg.regime);
             motion = formulation(forces.clone());
             let next = motion.derivative(time.into(), &state);
@@ -257,7 +252,7 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     };
     state = from_fn(|i| state[i] + place.rates[i] * delay);
     for happening in happenings {
-        state = push::<F, N>(&flight.case.events[happening.event].then, &state);
+        state = push::<F, N>(flight, happening, delay, &state);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&state));
@@ -313,8 +308,8 @@ fn turning_delay<F: Formulation<N>, const N: usize>(
     if let Some(delay) = now.iter().find_map(delay_of) {
         return delay;
     }
-    if let Some(burnout) = stage.burnout().filter(|burnout| burnout.value() <= place.time) {
-        return burnout - burnout.value();
+    if let Some(change) = stage.next_change_by_time().filter(|change| change.value() <= place.time) {
+        return change - change.value();
     }
     let plain = stage.plain_forces(forces.regime());
     let values = F::planet_fixed(&place.state.map(Scalar::value));
@@ -347,12 +342,19 @@ fn delay(quantity: Dual, rate: f64) -> Dual {
     -(quantity - quantity.value()) * rate.recip()
 }
 
-/// The state after the impulse of an effect, if it has one.
-fn push<F: Formulation<N>, const N: usize>(effect: &Effect, state: &[Dual; N]) -> [Dual; N] {
+/// The state after the impulse of an event, if it has one.
+fn push<F: Formulation<N>, const N: usize>(
+    flight: &Trajectory,
+    happening: &Happening,
+    delay: Dual,
+    state: &[Dual; N],
+) -> [Dual; N] {
+    let effect = &flight.case.events[happening.event].then;
     let Some(Impulse { along, speed_change }) = effect.impulse else { return *state };
     let heat_load = state.get(6).copied().unwrap_or(Dual::from(0.0));
     let state = F::planet_fixed(state);
-    let velocity = state.velocity + motion::along(along, &state) * Dual::from(speed_change);
+    let direction = motion::along(along, &flight.case.planet, delay + happening.before.time, &state);
+    let velocity = state.velocity + direction * Dual::from(speed_change);
     F::coordinates(&PlanetFixed { velocity, ..state }, heat_load)
 }
 
@@ -368,13 +370,15 @@ struct Stage<'a> {
     mass: Dual,
     /// Left to burn then, kg.
     propellant: Option<Dual>,
+    /// When each of the canopies of the phase was deployed, s.
+    deployed: Vec<Dual>,
 }
 
 impl<'a> Stage<'a> {
     fn first(flight: &'a Trajectory, parameters: &Parameters<Dual>) -> Self {
         let vehicle = &flight.case.vehicle;
         let mass = if vehicle.is_ballistic() { Dual::from(vehicle.mass) } else { parameters.mass };
-        Self { flight, phase: 0, parameters: *parameters, since: Dual::from(0.0), mass, propellant: None }
+        Self { flight, phase: 0, parameters: *parameters, since: Dual::from(0.0), mass, propellant: None, deployed: Vec::new() }
     }
 
     fn as_flown(&self) -> &'a Phase {
@@ -395,6 +399,13 @@ impl<'a> Stage<'a> {
         Some(self.since + self.propellant? / self.mass_flow())
     }
 
+    /// When the propellant is spent, or a canopy begins to fill or is full, s, whichever comes next.
+    fn next_change_by_time(&self) -> Option<Dual> {
+        let canopies = self.as_flown().canopies.iter().zip(&self.deployed);
+        let inflations = canopies.filter_map(|(canopy, deployed)| canopy.corner(*deployed));
+        self.burnout().into_iter().chain(inflations).min_by(|a, b| a.value().total_cmp(&b.value()))
+    }
+
     fn forces(&self, regime: Regime) -> Forces<Dual> {
         let over_mass = self.mass.recip();
         let burn = self.as_flown().thrust.map(|thrust| Burn {
@@ -404,7 +415,9 @@ impl<'a> Stage<'a> {
             flow: over_mass * thrust.mass_flow(),
         });
         let models = self.flight.case.models_of(&self.as_flown().vehicle);
-        let mut forces = Forces::new(models, self.parameters).of_mass(self.mass).burning(burn);
+        let canopies = self.as_flown().canopies.iter().copied().zip(self.deployed.iter().copied());
+        let canopies = Canopies::of(canopies, over_mass);
+        let mut forces = Forces::new(models, self.parameters).of_mass(self.mass).burning(burn).under(canopies);
         forces.enter(regime);
         forces
     }
@@ -416,11 +429,19 @@ impl<'a> Stage<'a> {
         forces
     }
 
-    /// The stage after the propellant is spent.
-    fn burnt_out(self, phase: usize, delay: Dual) -> Self {
-        let time = delay + self.flight.flown.phases[phase].since;
-        let mass = self.mass - self.propellant.unwrap_or(Dual::from(0.0));
-        Self { phase, since: time, propellant: None, ..self.with_mass(mass) }
+    /// The stage in a phase to which time alone leads: propellant is spent, canopies begin to fill or are full.
+    fn changed_by_time(self, phase: usize, delay: Dual) -> Self {
+        let mut stage = self;
+        while stage.phase < phase {
+            let next = &stage.flight.flown.phases[stage.phase + 1];
+            let time = delay + next.since;
+            let burns_on = next.thrust.is_some();
+            let burnt = if burns_on { stage.burnt(time) } else { stage.propellant.unwrap_or(Dual::from(0.0)) };
+            let propellant = stage.propellant.filter(|_| burns_on).map(|propellant| propellant - burnt);
+            let mass = stage.mass - burnt;
+            stage = Self { phase: stage.phase + 1, since: time, propellant, ..stage.with_mass(mass) };
+        }
+        stage
     }
 
     /// The stage after an event.
@@ -437,7 +458,11 @@ impl<'a> Stage<'a> {
             Some(Engine::On(thrust)) => thrust.propellant.map(Dual::from),
             Some(Engine::Off) => None,
         };
-        let mut next = Self { phase: happening.after.phase, since: time, propellant, ..self.with_mass(mass) };
+        let stays = |(canopy, _): &(&Canopy, &Dual)| !effect.release.contains(&canopy.event);
+        let canopies = self.as_flown().canopies.iter().zip(&self.deployed).filter(stays);
+        let deployed = canopies.map(|(_, deployed)| *deployed).chain(effect.deploy.map(|_| time)).collect();
+        let phase = happening.after.phase;
+        let mut next = Self { phase, since: time, propellant, deployed, ..self.with_mass(mass) };
         let vehicle = &next.as_flown().vehicle;
         let as_flown = self.flight.case.parameters_of(vehicle);
         let ballistic = vehicle.is_ballistic();
@@ -459,6 +484,7 @@ impl<'a> Stage<'a> {
     /// The same vehicle of another mass, kg.
     fn with_mass(&self, mass: Dual) -> Self {
         let of_parameters = if self.was_ballistic() { self.parameters.mass * mass * self.mass.recip() } else { mass };
-        Self { parameters: Parameters { mass: of_parameters, ..self.parameters }, mass, ..*self }
+        let parameters = Parameters { mass: of_parameters, ..self.parameters };
+        Self { parameters, mass, deployed: self.deployed.clone(), ..*self }
     }
 }

@@ -68,6 +68,19 @@ pub enum SimulationError {
         /// The instant reached, s.
         time: f64,
     },
+    /// A braking thrust has brought the vehicle to rest, where it has no direction.
+    #[error(
+        "the thrust of event {event} has no direction from t = {} s on, at an altitude of {} m: it acts along the velocity, and the vehicle is at rest",
+        Plain(*.time), Plain(*.altitude)
+    )]
+    NoDirection {
+        /// The number of the event that switched the thrust on.
+        event: usize,
+        /// The instant reached, s.
+        time: f64,
+        /// Along the radius vector, m.
+        altitude: f64,
+    },
     /// The flag was raised.
     #[error("interrupted at t = {} s", Plain(*.time))]
     Interrupted {
@@ -101,7 +114,7 @@ fn name(switch: Switch) -> &'static str {
 ///
 /// # Errors
 /// When the flight needs too many or too small steps, when it reaches a singularity of the spherical equations, when thrust burns all
-/// of the vehicle, and when interrupted.
+/// of the vehicle or brakes it to rest, and when interrupted.
 pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     match (case.solver.equations, case.heating) {

@@ -139,6 +139,23 @@ pub enum Warning {
         /// s.
         time: f64,
     },
+    /// A thrust was switched on where it has no direction: along a velocity of none, or level in vertical flight. It acts as soon as it
+    /// has one, and meanwhile burns its propellant.
+    ThrustWithoutDirection {
+        /// The number of its event.
+        event: usize,
+        /// s.
+        time: f64,
+    },
+    /// A parachute was to be cut off that is not deployed.
+    NotDeployed {
+        /// The number of the event that was to cut it off.
+        event: usize,
+        /// The number of the event that deploys it.
+        parachute: usize,
+        /// s.
+        time: f64,
+    },
 }
 
 impl Warning {
@@ -149,7 +166,9 @@ impl Warning {
             | Self::OutsideTable { time, .. }
             | Self::OutsideRange { time, .. }
             | Self::PropellantSpent { time }
-            | Self::NoDirection { time, .. } => time,
+            | Self::NoDirection { time, .. }
+            | Self::ThrustWithoutDirection { time, .. }
+            | Self::NotDeployed { time, .. } => time,
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Where a vehicle points, and how lift fades near the vertical.
+//! Where a vehicle points, and how what has no direction there fades: lift near the vertical, wind near the poles.
 
 use nalgebra::Vector3;
 
-use super::LIFT_FADE_ANGLE;
+use super::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use crate::scalar::{Scalar, length, reciprocal_or_one};
 
 /// Where a state points.
@@ -49,4 +49,22 @@ pub(super) fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
     let in_cone = cos_gamma.less_than(LIFT_FADE_ANGLE);
     let full = S::select(in_cone, S::one(), cos_gamma).recip();
     S::select(in_cone, faded, full)
+}
+
+/// The share of the wind that is left near a pole: with x = min(cos φ/ε, 1), x³(10 - 15x + 6x²).
+///
+/// Wind to the north blows towards the pole from all sides, and wind to the east around it: without the fade the air would jump to the
+/// opposite direction there, and what drifts with it could not go on.
+#[inline(always)]
+pub(super) fn wind_fade<S: Scalar>(cos_latitude: S) -> S {
+    let x = cos_latitude / WIND_FADE_ANGLE;
+    let faded = x * x * x * (x * (x * 6.0 - 15.0) + 10.0);
+    S::select(cos_latitude.less_than(WIND_FADE_ANGLE), faded, S::one())
+}
+
+/// A vector on axes that have turned away from it by an angle, rad, about z.
+#[inline(always)]
+pub(super) fn turned<S: Scalar>(vector: &Vector3<f64>, angle: S) -> Vector3<S> {
+    let (sin, cos) = angle.sin_cos();
+    Vector3::new(cos * vector.x + sin * vector.y, cos * vector.y - sin * vector.x, S::from(vector.z))
 }

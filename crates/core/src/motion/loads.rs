@@ -104,6 +104,11 @@ impl<P: Scalar> Forces<P> {
         let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, flow);
         let cos_gamma = flow.directions.cos_gamma;
         let lift_coefficient = lift_coefficient * (lift_fade_over_cosine(cos_gamma) * cos_gamma);
+        if let Some(canopies) = &self.canopies {
+            let lift = lift_coefficient * self.area_over_mass;
+            let drag = drag_coefficient * self.area_over_mass + canopies.area_over_mass(time);
+            return dynamic_pressure * (lift * lift + drag * drag).sqrt() * STANDARD_GRAVITY.recip();
+        }
         let coefficient = (lift_coefficient * lift_coefficient + drag_coefficient * drag_coefficient).sqrt();
         dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY)
     }

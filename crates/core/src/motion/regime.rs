@@ -173,11 +173,12 @@ impl<P: Scalar> Forces<P> {
 }
 
 impl Forces {
-    /// Whether something is looked up between entries that steps do not meet.
+    /// Whether a load may turn more than once in a step: something is looked up between entries that steps do not meet, or a canopy fills.
     pub(crate) fn has_tables(&self) -> bool {
         matches!(self.models.atmosphere, Atmosphere::Table(_))
             || matches!(self.models.wind, Wind::Table(_))
             || self.models.aerodynamics.is_by_mach()
+            || self.canopies.as_ref().is_some_and(|canopies| !canopies.filling.is_empty())
     }
 
     /// The tables outside which the present regime lies: the edge beyond which it does, and whether that is above it.

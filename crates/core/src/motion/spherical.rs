@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::directions::{Directions, lift_fade_over_cosine};
+use super::directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
 use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without_heat_load};
 use crate::coordinates::{FlightPath, PlanetFixed};
 use crate::integrate::{Pace, System};
@@ -42,7 +42,7 @@ impl<P: Scalar> Spherical<P> {
     #[inline(always)]
     fn rates<const THESIS: bool, S: Over<P>>(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
         let planet = self.0.models.planet;
-        let FlightPath { radius: r, geocentric_latitude, speed: v, flight_path_angle, heading, .. } =
+        let FlightPath { radius: r, longitude, geocentric_latitude, speed: v, flight_path_angle, heading } =
             FlightPath::from(*coordinates);
         let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();
         let (sin_gamma, cos_gamma) = flight_path_angle.sin_cos();
@@ -51,8 +51,9 @@ impl<P: Scalar> Spherical<P> {
 
         let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
         let velocity = Velocity { speed: v, sin_gamma, cos_gamma, sin_psi, cos_psi };
-        let [ahead, up, left_over_cos_gamma] = self.aerodynamic::<THESIS, _>(time, altitude, r, &velocity);
-        let [ahead, up, left_over_cos_gamma] = match if THESIS { None } else { self.thrust(time, &velocity) } {
+        let place = Place { longitude, sin_phi, cos_phi };
+        let [ahead, up, left_over_cos_gamma] = self.aerodynamic::<THESIS, _>(time, altitude, r, cos_phi, &velocity);
+        let [ahead, up, left_over_cos_gamma] = match if THESIS { None } else { self.thrust(time, &place, &velocity) } {
             Some(thrust) => [ahead + thrust[0], up + thrust[1], left_over_cos_gamma + thrust[2]],
             None => [ahead, up, left_over_cos_gamma],
         };
@@ -89,6 +90,13 @@ impl<P: Scalar> Spherical<P> {
     }
 }
 
+/// A place on the planet.
+struct Place<S> {
+    longitude: S,
+    sin_phi: S,
+    cos_phi: S,
+}
+
 /// A velocity relative to the planet, by its magnitude and its angles.
 struct Velocity<S> {
     speed: S,
@@ -96,6 +104,20 @@ struct Velocity<S> {
     cos_gamma: S,
     sin_psi: S,
     cos_psi: S,
+}
+
+impl<S: Scalar> Velocity<S> {
+    /// What a vector along up, east and north has along the velocity, across it upward, and across it to the left over cos γ.
+    #[inline(always)]
+    fn seen_along(&self, [up, east, north]: [S; 3]) -> [S; 3] {
+        let Self { sin_gamma, cos_gamma, sin_psi, cos_psi, .. } = *self;
+        let level = east * cos_psi + north * sin_psi;
+        [
+            up * sin_gamma + level * cos_gamma,
+            up * cos_gamma - level * sin_gamma,
+            (north * cos_psi - east * sin_psi) * cos_gamma.recip(),
+        ]
+    }
 }
 
 impl<P: Scalar> Spherical<P> {
@@ -106,6 +128,7 @@ impl<P: Scalar> Spherical<P> {
         time: S,
         altitude: S,
         radius: S,
+        cos_phi: S,
         velocity: &Velocity<S>,
     ) -> [S; 3] {
         let Velocity { speed, sin_gamma, cos_gamma, sin_psi, cos_psi } = *velocity;
@@ -123,16 +146,13 @@ impl<P: Scalar> Spherical<P> {
                 let (sin_sigma, cos_sigma) = forces.sin_cos_bank::<THESIS, _>(time, &flow);
                 [-(air.drag * density), lift_over_cos_gamma * cos_gamma * cos_sigma, lift_over_cos_gamma * sin_sigma]
             }
-            Some([to_east, to_north]) => {
+            Some(wind) => {
+                let fade = wind_fade((cos_phi * cos_phi).sqrt());
+                let [to_east, to_north] = wind.map(|part| part * fade);
                 let relative = Vector3::new(up, east - to_east, north - to_north);
                 let flow = forces.flow_of::<THESIS, _>(altitude, Directions::of(&position, &relative), speed);
                 let force = forces.aerodynamic::<THESIS, _>(time, &flow);
-                let level = force.y * cos_psi + force.z * sin_psi;
-                [
-                    force.x * sin_gamma + level * cos_gamma,
-                    force.x * cos_gamma - level * sin_gamma,
-                    (force.z * cos_psi - force.y * sin_psi) * cos_gamma.recip(),
-                ]
+                velocity.seen_along(force.into())
             }
         }
     }
@@ -141,15 +161,26 @@ impl<P: Scalar> Spherical<P> {
 impl<P: Scalar> Spherical<P> {
     /// The thrust over the mass, m/s²: along the velocity, across it upward, and across it to the left over cos γ.
     #[inline(always)]
-    fn thrust<S: Over<P>>(&self, time: S, velocity: &Velocity<S>) -> Option<[S; 3]> {
+    fn thrust<S: Over<P>>(&self, time: S, place: &Place<S>, velocity: &Velocity<S>) -> Option<[S; 3]> {
         let burn = self.0.burn.as_ref()?;
         let acceleration = burn.lightness(time) * burn.acceleration;
+        let Velocity { sin_gamma, cos_gamma, .. } = *velocity;
+        let faded_over_cos_gamma = || acceleration * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
         Some(match burn.along {
             Axis::Velocity => [acceleration, S::zero(), S::zero()],
-            Axis::Radial => [acceleration * velocity.sin_gamma, acceleration * velocity.cos_gamma, S::zero()],
-            Axis::Normal => {
-                let length = (velocity.cos_gamma * velocity.cos_gamma).sqrt();
-                [S::zero(), S::zero(), acceleration * lift_fade_over_cosine(length)]
+            Axis::Radial => [acceleration * sin_gamma, acceleration * cos_gamma, S::zero()],
+            Axis::Normal => [S::zero(), S::zero(), faded_over_cos_gamma()],
+            Axis::Horizontal => {
+                let level = faded_over_cos_gamma() * cos_gamma;
+                [level * cos_gamma, -(level * sin_gamma), S::zero()]
+            }
+            Axis::Inertial(direction) => {
+                // Outward from the axis, east, and along it.
+                let angle = time * self.0.models.planet.rotation_rate + place.longitude;
+                let [outward, east, axial]: [S; 3] = turned(&direction, angle).into();
+                let up = outward * place.cos_phi + axial * place.sin_phi;
+                let north = axial * place.cos_phi - outward * place.sin_phi;
+                velocity.seen_along([up, east, north].map(|part| part * acceleration))
             }
         })
     }

@@ -8,6 +8,7 @@ use super::{Case, Fault, Plain};
 use crate::atmosphere::Atmosphere;
 use crate::control::Command;
 use crate::event::{Condition, Effect, Engine, Quantity, Trigger};
+use crate::parachute::Parachute;
 use crate::planet::{Gravity, Zonal};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
@@ -58,7 +59,9 @@ impl Bound {
     pub const WIND: Self = Self::between(-1e4, 1e4);
     /// The time at which a flight ends, s.
     pub const STOP_TIME: Self = Self::above(0.0, 1e9);
-    /// Times since the start, s.
+    /// Drag areas of parachutes, m².
+    pub const DRAG_AREA: Self = Self::between(0.0, 1e9);
+    /// Times since the start, and spans of time, s.
     pub const TIME: Self = Self::between(0.0, 1e9);
     /// Seconds since the inertial and the planet-fixed frame were aligned.
     pub const SIDEREAL_TIME: Self = Self::between(-1e9, 1e9);
@@ -190,8 +193,14 @@ fn numbers(index: usize, effect: &Effect) -> Vec<Check> {
     checks.extend(effect.impulse.map(|impulse| of("impulse.speed_change", impulse.speed_change, Bound::VELOCITY)));
     if let Some(Engine::On(thrust)) = effect.engine {
         checks.push(of("engine.force", thrust.force, Bound::FORCE));
-        checks.push(of("engine.specific_impulse", thrust.specific_impulse, Bound::SPECIFIC_IMPULSE));
+        let specific_impulse = thrust.specific_impulse.into_iter();
+        checks.extend(specific_impulse.map(|it| of("engine.specific_impulse", it, Bound::SPECIFIC_IMPULSE)));
         checks.extend(thrust.propellant.map(|mass| of("engine.propellant", mass, Bound::POSITIVE)));
+    }
+    if let Some(Parachute { drag_area, inflation_time, delay }) = effect.deploy {
+        checks.push(of("deploy.drag_area", drag_area, Bound::DRAG_AREA));
+        checks.push(of("deploy.inflation_time", inflation_time, Bound::TIME));
+        checks.push(of("deploy.delay", delay, Bound::TIME));
     }
     let aerodynamics = effect.aerodynamics.iter();
     checks.extend(aerodynamics.flat_map(|aerodynamics| coefficients(&format!("events.{index}.then"), aerodynamics)));

@@ -3,6 +3,7 @@
 use super::Case;
 use crate::event::{Effect, Engine};
 use crate::motion::{Burn, Forces};
+use crate::parachute::{Canopies, Canopy};
 use crate::propulsion::Thrust;
 use crate::vehicle::Vehicle;
 
@@ -15,12 +16,14 @@ pub struct Phase {
     pub vehicle: Vehicle,
     /// The thrust that is on, with the propellant that is left then.
     pub thrust: Option<Thrust>,
+    /// The parachutes that are deployed, whether they are open yet or not.
+    pub canopies: Vec<Canopy>,
 }
 
 impl Phase {
     /// That in which a flight begins.
     pub fn first(case: &Case) -> Self {
-        Self { since: 0.0, vehicle: case.vehicle.clone(), thrust: None }
+        Self { since: 0.0, vehicle: case.vehicle.clone(), thrust: None, canopies: Vec::new() }
     }
 
     /// The mass at a time of the phase, kg.
@@ -33,6 +36,12 @@ impl Phase {
         self.thrust.map_or(0.0, |thrust| thrust.mass_flow() * (time - self.since))
     }
 
+    /// The thrust that is on, with the propellant that is left at a time of the phase.
+    fn thrust_left(&self, time: f64) -> Option<Thrust> {
+        let left = |whole: f64| whole - self.burnt(time);
+        self.thrust.map(|thrust| Thrust { propellant: thrust.propellant.map(left), ..thrust })
+    }
+
     /// When the propellant is spent, s.
     pub fn burnout(&self) -> Option<f64> {
         let thrust = self.thrust?;
@@ -41,12 +50,18 @@ impl Phase {
 
     /// When nothing at all would be left, s.
     pub fn last_instant(&self) -> Option<f64> {
-        Some(self.since + self.vehicle.mass / self.thrust?.mass_flow())
+        let flow = self.thrust?.mass_flow();
+        (flow > 0.0).then(|| self.since + self.vehicle.mass / flow)
     }
 
-    /// The phase that begins with an effect at a time.
+    /// When a canopy begins to fill, or is full, s, whichever comes next.
+    pub fn next_inflation(&self) -> Option<f64> {
+        self.canopies.iter().filter_map(Canopy::next_corner).reduce(f64::min)
+    }
+
+    /// The phase that begins with the effect of an event of this number at a time.
     #[must_use]
-    pub fn after(&self, effect: &Effect, time: f64) -> Self {
+    pub fn after(&self, event: usize, effect: &Effect, time: f64) -> Self {
         let mass = effect.mass.unwrap_or_else(|| self.mass(time));
         let Vehicle { reference_area, aerodynamics, .. } = self.vehicle.with_mass(mass);
         let vehicle = Vehicle {
@@ -55,21 +70,30 @@ impl Phase {
             mass,
             ..self.vehicle
         };
-        let left =
-            |thrust: Thrust| Thrust { propellant: thrust.propellant.map(|whole| whole - self.burnt(time)), ..thrust };
         let thrust = match effect.engine {
-            None => self.thrust.map(left),
+            None => self.thrust_left(time),
             Some(Engine::On(thrust)) => Some(thrust).filter(|thrust| thrust.force != 0.0),
             Some(Engine::Off) => None,
         };
-        Self { since: time, vehicle, thrust }
+        let stays = |canopy: &&Canopy| !effect.release.contains(&canopy.event);
+        let deployed = effect.deploy.map(|parachute| Canopy::new(event, parachute, time));
+        let canopies = self.canopies.iter().filter(stays).copied().chain(deployed).collect();
+        Self { since: time, vehicle, thrust, canopies }
+    }
+
+    /// The phase that begins where a canopy begins to fill, or is full.
+    #[must_use]
+    pub fn inflated(&self, time: f64) -> Self {
+        let vehicle = self.vehicle.with_mass(self.mass(time));
+        let canopies = self.canopies.iter().map(|canopy| canopy.at(time)).collect();
+        Self { since: time, vehicle, thrust: self.thrust_left(time), canopies }
     }
 
     /// The phase that begins where the propellant is spent.
     #[must_use]
     pub fn burnt_out(&self, time: f64) -> Self {
         let spent = self.thrust.and_then(|thrust| thrust.propellant).unwrap_or(0.0);
-        Self { since: time, vehicle: self.vehicle.with_mass(self.vehicle.mass - spent), thrust: None }
+        Self { since: time, vehicle: self.vehicle.with_mass(self.vehicle.mass - spent), thrust: None, ..self.clone() }
     }
 
     /// What acts on the vehicle.
@@ -80,8 +104,11 @@ impl Phase {
             acceleration: thrust.force / self.vehicle.mass,
             flow: thrust.mass_flow() / self.vehicle.mass,
         });
+        let over_mass = self.vehicle.mass.recip();
+        let canopies = Canopies::of(self.canopies.iter().map(|canopy| (*canopy, canopy.deployed)), over_mass);
         Forces::new(case.models_of(&self.vehicle), case.parameters_of(&self.vehicle))
             .of_mass(self.vehicle.mass)
             .burning(burn)
+            .under(canopies)
     }
 }

@@ -3,15 +3,18 @@
 use std::array::from_fn;
 use std::sync::atomic::AtomicBool;
 
+use nalgebra::Vector3;
+
 use super::SimulationError;
 use super::alarms::{Alarms, moments_up_to};
 use super::descent::{Descent, land};
 use super::passage::Passage;
 use super::watch::{Exit, Watch, next_corner};
 use crate::coordinates::PlanetFixed;
+use crate::event::{Effect, Engine};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
-use crate::motion::{self, Chatter, Formulation, Moment, heat_load};
-use crate::propulsion::Impulse;
+use crate::motion::{self, Chatter, Formulation, Moment, Singularity, heat_load};
+use crate::propulsion::{Axis, Impulse};
 use crate::scenario::{Phase, Scenario};
 use crate::trajectory::{Arrival, Happening, Instant, Termination, Warning};
 
@@ -98,7 +101,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 
     /// When the next step must end at the latest, s: with the time of the flight, with a stretch of a schedule, where a condition on
-    /// the time is met, or where the propellant is spent.
+    /// the time is met, where the propellant is spent, or where a canopy begins to fill or is full.
     pub(super) fn horizon(&self) -> f64 {
         let mut end = self.scenario.case().stop.time;
         if self.motion.forces().has_switches() {
@@ -107,8 +110,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if !self.alarms.is_empty() {
             end = end.min(self.alarms.next_time());
         }
-        let burn = [self.phase.burnout(), self.phase.last_instant()];
-        burn.into_iter().flatten().fold(end, f64::min)
+        let of_phase = [self.phase.burnout(), self.phase.last_instant(), self.phase.next_inflation()];
+        of_phase.into_iter().flatten().fold(end, f64::min)
     }
 
     /// Takes a step.
@@ -152,13 +155,19 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         watch.follow(&passage);
         alarms.follow(&passage);
         (self.time, self.state) = (passage.step.end_time, passage.step.end);
-        regular(motion, self.time, &self.state)?;
+        let halted = halts(motion, self.time, &self.state);
+        if !halted {
+            regular(motion, self.time, &self.state)?;
+        }
         observe(&passage)?;
         self.looks += passage.evaluations();
+        if halted {
+            self.halt();
+        }
 
         let mut ending = (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
         let mut exit = None;
-        let turns = cut.is_some() || self.alarms.is_due() || self.time >= horizon;
+        let turns = cut.is_some() || halted || self.alarms.is_due() || self.time >= horizon;
         match cut {
             Some(Cut::Ground) => ending = Some(self.ground()),
             Some(Cut::Exit(left)) => exit = Some(left),
@@ -181,14 +190,14 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if ending.is_none() {
             settled?;
         }
-        self.burn_out()?;
+        self.change_by_time()?;
         let mut eventless = true;
         if !self.alarms.is_empty() {
             self.look();
             loop {
                 while let Some(event) = self.alarms.next_event(self.time) {
                     self.happen(event)?;
-                    self.burn_out()?;
+                    self.change_by_time()?;
                     self.look();
                     eventless = false;
                 }
@@ -205,6 +214,9 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if let Some(ending) = ending.or_else(|| self.alarms.end()) {
             return Ok(Some(self.arrival(ending)));
         }
+        if halts(&self.motion, self.time, &self.state) {
+            return Err(self.no_direction(self.time));
+        }
         self.integrator.restart(&self.motion, self.time, self.state);
         let start = Moment::of::<F, N>(self.time, &self.state, self.integrator.derivative());
         let watch = Watch::new(self.motion.forces(), &start);
@@ -215,11 +227,28 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         }
     }
 
-    /// Ends the thrust if its propellant is spent.
-    fn burn_out(&mut self) -> Result<(), SimulationError> {
+    /// Goes the rest of the way to rest, so that a condition on the speed 0 is met.
+    fn halt(&mut self) {
+        let still = PlanetFixed { velocity: Vector3::zeros(), ..F::planet_fixed(&self.state) };
+        self.state = F::coordinates(&still, heat_load(&self.state).unwrap_or(0.0));
+    }
+
+    /// The thrust that is on has no direction.
+    fn no_direction(&self, time: f64) -> SimulationError {
+        let switches_on = |event: &usize| matches!(self.scenario.case().events[*event].then.engine, Some(Engine::On(_)));
+        let event = self.log.happenings.iter().rev().map(|happening| happening.event).find(switches_on).unwrap_or(0);
+        let altitude = self.scenario.case().planet.shape.altitude(&F::planet_fixed(&self.state).position);
+        SimulationError::NoDirection { event, time, altitude }
+    }
+
+    /// Ends the thrust if its propellant is spent, and lets canopies begin to fill, or be full.
+    fn change_by_time(&mut self) -> Result<(), SimulationError> {
         if self.phase.burnout().is_some_and(|burnout| self.time >= burnout) {
             self.log.warnings.push(Warning::PropellantSpent { time: self.time });
             self.enter(self.phase.burnt_out(self.time))?;
+        }
+        if self.phase.next_inflation().is_some_and(|inflation| self.time >= inflation) {
+            self.enter(self.phase.inflated(self.time))?;
         }
         Ok(())
     }
@@ -254,17 +283,37 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if let Some(impulse) = effect.impulse {
             self.push(event, impulse);
         }
+        self.warn_of(event, effect);
         if !effect.is_none() {
-            self.enter(self.phase.after(effect, self.time))?;
+            self.enter(self.phase.after(event, effect, self.time))?;
         }
         self.log.happenings.push(Happening { event, before, after: self.instant() });
         Ok(())
     }
 
+    /// Warns of a thrust that has no direction where it is switched on, and of parachutes that are not there to be cut off.
+    fn warn_of(&mut self, event: usize, effect: &Effect) {
+        let time = self.time;
+        if let Some(Engine::On(thrust)) = effect.engine
+            && thrust.force != 0.0
+            && self.direction(thrust.along).is_none()
+        {
+            self.log.warnings.push(Warning::ThrustWithoutDirection { event, time });
+        }
+        let is_there = |parachute: &usize| self.phase.canopies.iter().any(|canopy| canopy.event == *parachute);
+        let missing = effect.release.iter().filter(|parachute| !is_there(parachute));
+        self.log.warnings.extend(missing.map(|parachute| Warning::NotDeployed { event, parachute: *parachute, time }));
+    }
+
+    /// A direction at the present instant, if there is one.
+    fn direction(&self, along: Axis) -> Option<Vector3<f64>> {
+        motion::direction(along, &self.scenario.case().planet, self.time, &F::planet_fixed(&self.state))
+    }
+
     /// Changes the velocity at once.
     fn push(&mut self, event: usize, impulse: Impulse) {
         let PlanetFixed { position, velocity } = F::planet_fixed(&self.state);
-        match motion::direction(impulse.along, &PlanetFixed { position, velocity }) {
+        match self.direction(impulse.along) {
             Some(direction) => {
                 let velocity = velocity + direction * impulse.speed_change;
                 let heat_load = heat_load(&self.state).unwrap_or(0.0);
@@ -306,7 +355,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if self.phase.mass(time) < NEARLY_NOTHING * self.phase.vehicle.mass {
             return SimulationError::NothingLeft { time };
         }
+        let forces = self.motion.forces();
+        let [_, circular_speed] = forces.units();
+        let speed = F::planet_fixed(&self.state).velocity.norm();
         match self.motion.singularity(&self.state, NEARLY_SINGULAR) {
+            _ if forces.thrusts_by_velocity() && speed <= NEARLY_AT_REST * circular_speed => self.no_direction(time),
             Some(at) => SimulationError::Singularity { time, at },
             None => otherwise,
         }
@@ -356,6 +409,14 @@ fn settle<F: Formulation<N>, const N: usize>(
     motion.forces_mut().settle(time, &state).map_err(|Chatter(switch)| SimulationError::Chatter { time, switch })
 }
 
+/// Whether a braking thrust has brought the vehicle to rest, as near as the steps or the equations come to it.
+fn halts<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64; N]) -> bool {
+    let forces = motion.forces();
+    let fixed = F::planet_fixed(state);
+    let at_rest = || forces.is_at_rest(&fixed) || motion.singularity(state, SINGULAR) == Some(Singularity::Rest);
+    forces.thrusts_by_velocity() && at_rest() && forces.brakes_to_rest(time, &fixed)
+}
+
 /// Refuses a state in which the equations break down.
 pub(super) fn regular<F: Formulation<N>, const N: usize>(
     motion: &F,
@@ -376,6 +437,8 @@ const NEARLY_SINGULAR: f64 = 1e-2;
 const FORESIGHT: f64 = 3e-3;
 /// By so much the altitude must change to tell where it goes, m: more than a rounding of the radius.
 const MOVES: f64 = 1e-6;
+/// An integration under a thrust by the velocity that fails at less than this part of the circular speed fails because of it.
+const NEARLY_AT_REST: f64 = 1e-4;
 /// From this part of a step on, a place counts as its end.
 const AT_END: f64 = 1.0 - 1e-9;
 /// An integration that fails where no more than this part of the mass is left fails because of it.
