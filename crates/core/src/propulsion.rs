@@ -1,6 +1,6 @@
 //! Propulsion: impulses, and a constant thrust that burns propellant.
 
-use nalgebra::{UnitVector3, Vector3};
+use nalgebra::{Rotation3, UnitVector3, Vector3};
 
 /// The unit of the load factor and of the specific impulse, m/s²: the standard acceleration of gravity (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
@@ -37,6 +37,15 @@ impl Axis {
         // The squares of huge and of tiny components would be none.
         let greatest = components.amax();
         (greatest > 0.0).then(|| Self::Inertial(UnitVector3::new_normalize(components / greatest)))
+    }
+
+    /// The same in other components, by the rotation that takes the ones to the others; what moves with the vehicle stays as it is.
+    #[must_use]
+    pub fn rotated_by(self, rotation: &Rotation3<f64>) -> Self {
+        match self {
+            Self::Inertial(direction) => Self::Inertial(rotation * direction),
+            other => other,
+        }
     }
 
     /// Whether there is none in vertical flight, near which a thrust along it fades out.

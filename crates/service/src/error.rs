@@ -135,7 +135,9 @@ impl ApiError {
 
     /// The one table: status, type and title.
     fn class(&self) -> (StatusCode, &'static str, &'static str) {
-        use SimulationError::{Chatter, Interrupted, NothingLeft, Overflow, Singularity, StepLimit, TooStiff};
+        use SimulationError::{
+            Chatter, Interrupted, NoDirection, NothingLeft, Overflow, Singularity, StepLimit, TooStiff,
+        };
         use StatusCode as Status;
         match self {
             Self::NotJson(_) | Self::CaseNotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
@@ -163,6 +165,9 @@ impl ApiError {
                     (Status::UNPROCESSABLE_ENTITY, "/problems/chattering-schedule", "Schedule undoes itself")
                 }
                 NothingLeft { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/no-mass-left", "No mass left"),
+                NoDirection { .. } => {
+                    (Status::UNPROCESSABLE_ENTITY, "/problems/no-direction", "Thrust without a direction")
+                }
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
                 Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
             },
@@ -195,6 +200,12 @@ impl ApiError {
             Self::Flight(SimulationError::NothingLeft { .. }) => {
                 one("/events", "switch the thrust off by an event, or say how much propellant there is".to_owned())
             }
+            Self::Flight(SimulationError::NoDirection { event, .. }) => one(
+                &format!("/events/{event}/then/thrust/along"),
+                "switch the thrust off or end the flight before the vehicle is at rest or there, for example where the speed falls through \
+                 0; or give a direction that there is at rest, \"radial\" or an inertial one"
+                    .to_owned(),
+            ),
             Self::Flight(SimulationError::Chatter { switch, .. }) => {
                 let advice =
                     "let the angle change along a line (\"interpolation\": \"linear\"), or against another quantity";

@@ -1,9 +1,14 @@
 //! The events of a request, and the conditions that let them happen or end the flight.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use reentry::coordinates::Rotation;
 use reentry::event::{
     Condition as CoreCondition, Direction, Effect as CoreEffect, Engine, Event as CoreEvent, Quantity as CoreQuantity,
     Trigger,
 };
+use reentry::parachute::Parachute as CoreParachute;
 use reentry::propulsion::{Axis as CoreAxis, Impulse, Thrust as CoreThrust};
 use reentry::scenario::Bound;
 use serde::Serialize;
@@ -13,7 +18,7 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
-use super::json::shown;
+use super::json::{shortened, shown};
 use super::reader::{Fault, Object};
 use super::vehicle::{Aerodynamics, Vehicle};
 
@@ -137,32 +142,84 @@ pub struct Effect {
     /// A constant thrust, which is switched on, or `"off"`.
     #[schema(required = false, value_type = ThrustCommand)]
     pub thrust: Option<ThrustCommand>,
+    /// A parachute that is deployed.
+    #[schema(required = false, value_type = Parachute)]
+    pub deploy: Option<Parachute>,
+    /// The names of parachutes that are cut off, before another is deployed. One that is not deployed then stays as it is, with a warning.
+    #[schema(required = false, max_items = 1000)]
+    pub release: Vec<String>,
+}
+
+/// A parachute, whose drag adds to that of the vehicle, along the velocity relative to the air: of several, all add up.
+///
+/// Its drag area grows as `drag_area` (t/`inflation_time`)² while it fills: T. W. Knacke, Parachute Recovery Systems Design Manual,
+/// NWC TP 6575, 1991, chapter 5, for canopies of solid cloth.
+#[derive(Clone, Debug, ToSchema)]
+pub struct Parachute {
+    /// By which `release` calls it; no two parachutes have the same, since each is deployed once.
+    pub name: String,
+    /// The drag coefficient times the area of the full canopy, m².
+    #[schema(minimum = 0, maximum = 1e9)]
+    pub drag_area: f64,
+    /// How long it fills, s; 0: it opens at once.
+    #[schema(minimum = 0, maximum = 1e9)]
+    pub inflation_time: f64,
+    /// From the event until it begins to fill, s.
+    #[schema(required = false, minimum = 0, maximum = 1e9, default = 0)]
+    pub delay: f64,
 }
 
 /// A change of velocity at an instant.
 #[derive(Clone, Copy, Debug, ToSchema)]
 pub struct DeltaV {
     /// Where to.
-    pub along: Axis,
+    pub along: Along,
     /// m/s; negative against the direction, as a deorbit burn along the velocity is.
     #[schema(minimum = -1e6, maximum = 1e6)]
     pub value: f64,
 }
 
 /// A constant thrust, switched on in place of one that burns. It ends where it is switched off, or where its propellant is spent.
+///
+/// A thrust against the velocity that is greater than what else moves the vehicle brings it to rest, where it has no direction: switch it
+/// off before, or end the flight, for example where the speed falls through 0.
 #[derive(Clone, Copy, Debug, ToSchema)]
 pub struct Thrust {
     /// Where to, at every instant.
-    pub along: Axis,
+    pub along: Along,
     /// N; negative against the direction, as a retro burn along the velocity is.
     #[schema(minimum = -1e12, maximum = 1e12)]
     pub value: f64,
-    /// s: the mass falls by |value|/(9.80665 m/s² `specific_impulse`) a second.
-    #[schema(minimum = 1e-3, maximum = 1e9)]
-    pub specific_impulse: f64,
-    /// How much there is to burn, kg; without it, the thrust burns until it is switched off.
+    /// s: the mass falls by |value|/(9.80665 m/s² `specific_impulse`) a second; without it, the mass stays.
+    #[schema(required = false, value_type = f64, minimum = 1e-3, maximum = 1e9)]
+    pub specific_impulse: Option<f64>,
+    /// How much there is to burn, kg; without it, the thrust burns until it is switched off. Only with a `specific_impulse`.
     #[schema(required = false, value_type = f64, exclusive_minimum = 0)]
     pub propellant: Option<f64>,
+}
+
+/// A direction: one that moves with the vehicle, or one that stays in inertial space.
+#[derive(Clone, Copy, Debug)]
+pub enum Along {
+    /// It moves with the vehicle.
+    Axis(Axis),
+    /// It stays in inertial space.
+    Inertial(InertialDirection),
+}
+
+/// A direction that stays in inertial space while the planet turns.
+///
+/// Its components are those of the inertial frame of the initial state: the `frame` of `eci` vectors and of orbital elements, and for other
+/// states that of date, from which the planet is turned by the `sidereal_time`, the `sidereal_angle` or the `epoch`.
+#[derive(Clone, Copy, Debug, ToSchema)]
+pub struct InertialDirection {
+    /// The frame.
+    pub frame: &'static str,
+    /// [x, y, z], of any length but 0.
+    pub direction: [f64; 3],
+    /// The same, for the core, on the axes of its frame.
+    #[schema(ignore)]
+    pub core: CoreAxis,
 }
 
 /// A direction that moves with the vehicle.
@@ -175,6 +232,24 @@ pub enum Axis {
     Radial,
     /// Across both, level, to the left of the flight direction.
     Normal,
+    /// Along the level part of the velocity relative to the rotating planet.
+    Horizontal,
+}
+
+impl PartialSchema for Along {
+    fn schema() -> RefOr<Schema> {
+        let reference = |name| RefBuilder::new().ref_location_from_schema_name(name);
+        let description = "Where to: by a word, or a direction that stays in inertial space.";
+        let along = OneOfBuilder::new().item(reference(Axis::name())).item(reference(InertialDirection::name()));
+        along.description(Some(description)).into()
+    }
+}
+
+impl ToSchema for Along {
+    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+        schemas.push((Axis::name().into(), Axis::schema()));
+        schemas.push((InertialDirection::name().into(), InertialDirection::schema()));
+    }
 }
 
 /// What becomes of the thrust.
@@ -213,13 +288,59 @@ impl Event {
         Some(Self { name, when: when?, then: then? })
     }
 
-    pub(super) fn to_core(&self, unit: AngleUnit, events: &[Self]) -> CoreEvent {
-        CoreEvent { when: self.when.to_core(unit, events), then: self.then.to_core() }
+    pub(super) fn to_core(&self, unit: AngleUnit, events: &[Self], among: &Among) -> CoreEvent {
+        CoreEvent { when: self.when.to_core(unit, events), then: self.then.to_core(among) }
     }
 
     /// Whether it may change the mass.
     pub fn changes_mass(&self) -> bool {
-        self.then.mass.is_some() || self.then.thrust.is_some()
+        let burns = |thrust: &ThrustCommand| matches!(thrust, ThrustCommand::On(thrust) if thrust.specific_impulse.is_some());
+        self.then.mass.is_some() || self.then.thrust.as_ref().is_some_and(burns)
+    }
+
+    /// Whether it pushes the vehicle along a direction that stays in inertial space.
+    fn is_inertial(&self) -> bool {
+        let along = [
+            self.then.delta_v.map(|delta_v| delta_v.along),
+            self.then.thrust.and_then(|thrust| match thrust {
+                ThrustCommand::On(thrust) => Some(thrust.along),
+                ThrustCommand::Off => None,
+            }),
+        ];
+        along.into_iter().flatten().any(|along| matches!(along, Along::Inertial(_)))
+    }
+
+    /// Inertial directions on a planet whose angle nobody knows: an epoch says nothing about it, and the state does not give it.
+    pub(super) fn frame_faults(events: &[Self], is_angle_known: bool) -> Vec<Fault> {
+        let detail = "is required by the inertial direction of an event: an epoch says nothing about the angle of a custom planet; give \
+                      sidereal_time or sidereal_angle";
+        let unknown = !is_angle_known && events.iter().any(Self::is_inertial);
+        unknown.then(|| Fault::new("/initial_state/sidereal_time", detail)).into_iter().collect()
+    }
+
+    /// Parachutes that share a name, and names of those that are cut off and never deployed.
+    pub(super) fn parachute_faults(events: &[Self]) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let mut deployed: HashMap<&str, usize> = HashMap::new();
+        for (index, Self { then, .. }) in events.iter().enumerate() {
+            let Some(Parachute { name, .. }) = &then.deploy else { continue };
+            match deployed.entry(name) {
+                Entry::Vacant(entry) => _ = entry.insert(index),
+                Entry::Occupied(first) => {
+                    let detail =
+                        format!("must be a name of its own: a parachute is deployed once, this one by event {}", first.get());
+                    faults.push(Fault::new(format!("/events/{index}/then/deploy/name"), detail));
+                }
+            }
+        }
+        for (index, Self { then, .. }) in events.iter().enumerate() {
+            for (place, name) in then.release.iter().enumerate().filter(|(_, name)| !deployed.contains_key(name.as_str())) {
+                let got = shortened(name);
+                let detail = format!("must be the name of a parachute that an event deploys, got {got:?}");
+                faults.push(Fault::new(format!("/events/{index}/then/release/{place}"), detail));
+            }
+        }
+        faults
     }
 
     /// Of a vehicle without an area: coefficients that would refer to one, and areas to which no coefficient ever refers.
@@ -318,25 +439,38 @@ impl Effect {
         let off = ("off", ThrustCommand::Off);
         let on = |object: &mut Object| Thrust::read(object).map(ThrustCommand::On);
         let thrust = if object.has("thrust") { object.word_or_object("thrust", off, on).map(Some) } else { Some(None) };
-        Some(Self { mass, reference_area, aerodynamics: aerodynamics?, delta_v: delta_v?, thrust: thrust? })
+        let deploy = object.optional_object("deploy", Parachute::read);
+        let release = object.optional_strings("release", MOST_EVENTS);
+        Some(Self {
+            mass,
+            reference_area,
+            aerodynamics: aerodynamics?,
+            delta_v: delta_v?,
+            thrust: thrust?,
+            deploy: deploy?,
+            release: release?,
+        })
     }
 
-    fn to_core(&self) -> CoreEffect {
+    fn to_core(&self, among: &Among) -> CoreEffect {
+        let parachute = |name: &String| among.parachutes.get(name.as_str()).copied();
         CoreEffect {
             mass: self.mass,
             reference_area: self.reference_area,
             aerodynamics: self.aerodynamics.as_ref().map(Aerodynamics::to_core),
             impulse: self
                 .delta_v
-                .map(|DeltaV { along, value }| Impulse { along: along.to_core(), speed_change: value }),
-            engine: self.thrust.map(ThrustCommand::to_core),
+                .map(|DeltaV { along, value }| Impulse { along: along.to_core(among), speed_change: value }),
+            engine: self.thrust.map(|thrust| thrust.to_core(among)),
+            release: self.release.iter().filter_map(parachute).collect(),
+            deploy: self.deploy.as_ref().map(Parachute::to_core),
         }
     }
 }
 
 impl DeltaV {
     fn read(object: &mut Object) -> Option<Self> {
-        let along = Axis::read(object);
+        let along = Along::read(object);
         let value = object.number("value", Bound::VELOCITY);
         Some(Self { along: along?, value: value? })
     }
@@ -344,35 +478,103 @@ impl DeltaV {
 
 impl Thrust {
     fn read(object: &mut Object) -> Option<Self> {
-        let along = Axis::read(object);
+        let along = Along::read(object);
         let value = object.number("value", Bound::FORCE);
-        let specific_impulse = object.number("specific_impulse", Bound::SPECIFIC_IMPULSE);
+        let burns = object.has("specific_impulse");
+        let specific_impulse = object.optional_number("specific_impulse", Bound::SPECIFIC_IMPULSE);
         let propellant = object.optional_number("propellant", Bound::POSITIVE);
-        Some(Self { along: along?, value: value?, specific_impulse: specific_impulse?, propellant })
+        if propellant.is_some() && !burns {
+            object.fault_of("propellant", "must be left out: without specific_impulse the thrust burns none".to_owned());
+        }
+        Some(Self { along: along?, value: value?, specific_impulse, propellant })
     }
 }
 
 impl ThrustCommand {
-    fn to_core(self) -> Engine {
+    fn to_core(self, among: &Among) -> Engine {
         match self {
             Self::On(Thrust { along, value, specific_impulse, propellant }) => {
-                Engine::On(CoreThrust { along: along.to_core(), force: value, specific_impulse, propellant })
+                Engine::On(CoreThrust { along: along.to_core(among), force: value, specific_impulse, propellant })
             }
             Self::Off => Engine::Off,
         }
     }
 }
 
-impl Axis {
-    fn read(object: &mut Object) -> Option<Self> {
-        object.choice("along", &[("velocity", Self::Velocity), ("radial", Self::Radial), ("normal", Self::Normal)])
+/// What an event of a request refers to outside itself.
+pub(super) struct Among<'a> {
+    /// The numbers of the events that deploy parachutes, by the names of these.
+    parachutes: HashMap<&'a str, usize>,
+    /// Takes components in the inertial frame to planet-fixed ones at t = 0.
+    to_planet: Rotation,
+}
+
+impl<'a> Among<'a> {
+    /// These events, with the rotation that takes components in the inertial frame to planet-fixed ones at t = 0.
+    pub(super) fn new(events: &'a [Event], to_planet: Rotation) -> Self {
+        let deploys = |(index, event): (usize, &'a Event)| Some((event.then.deploy.as_ref()?.name.as_str(), index));
+        Self { parachutes: events.iter().enumerate().filter_map(deploys).collect(), to_planet }
     }
+}
+
+impl Parachute {
+    fn read(object: &mut Object) -> Option<Self> {
+        let name = object.string("name");
+        let drag_area = object.number("drag_area", Bound::DRAG_AREA);
+        let inflation_time = object.number("inflation_time", Bound::TIME);
+        let delay = object.number_or("delay", Bound::TIME, 0.0);
+        Some(Self { name: name?, drag_area: drag_area?, inflation_time: inflation_time?, delay: delay? })
+    }
+
+    fn to_core(&self) -> CoreParachute {
+        let Self { drag_area, inflation_time, delay, .. } = *self;
+        CoreParachute { drag_area, inflation_time, delay }
+    }
+}
+
+impl Along {
+    fn read(object: &mut Object) -> Option<Self> {
+        let words = [
+            ("velocity", Axis::Velocity),
+            ("radial", Axis::Radial),
+            ("normal", Axis::Normal),
+            ("horizontal", Axis::Horizontal),
+        ];
+        if object.has_object("along") {
+            object.object("along", InertialDirection::read).map(Self::Inertial)
+        } else {
+            object.choice("along", &words).map(Self::Axis)
+        }
+    }
+
+    fn to_core(self, among: &Among) -> CoreAxis {
+        match self {
+            Self::Axis(axis) => axis.to_core(),
+            Self::Inertial(direction) => direction.core.rotated_by(&among.to_planet),
+        }
+    }
+}
+
+impl InertialDirection {
+    fn read(object: &mut Object) -> Option<Self> {
+        let frame = object.choice("frame", &[("inertial", "inertial")]);
+        let direction = object.vector("direction", Bound::FINITE);
+        let core = CoreAxis::inertial(direction?);
+        if core.is_none() {
+            object.fault_of("direction", "must not be [0, 0, 0], which has no direction".to_owned());
+        }
+        Some(Self { frame: frame?, direction: direction?, core: core? })
+    }
+}
+
+impl Axis {
 
     fn to_core(self) -> CoreAxis {
         match self {
             Self::Velocity => CoreAxis::Velocity,
             Self::Radial => CoreAxis::Radial,
             Self::Normal => CoreAxis::Normal,
+            Self::Horizontal => CoreAxis::Horizontal,
         }
     }
 }

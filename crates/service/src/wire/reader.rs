@@ -377,12 +377,25 @@ impl Object<'_> {
 
     /// A string that may be left out.
     pub fn optional_string(&mut self, name: &'static str) -> Option<String> {
-        if !self.has(name) {
-            return None;
-        }
+        if self.has(name) { self.string(name) } else { None }
+    }
+
+    /// A string that must be given.
+    pub fn string(&mut self, name: &'static str) -> Option<String> {
         let value = self.required(name)?;
         let string = value.as_str().map(str::to_owned).ok_or(format!("must be a string, got {}", kind_of(value)));
         self.check(name, string, Ok)
+    }
+
+    /// Strings, so many at most; without the field there are none.
+    pub fn optional_strings(&mut self, name: &'static str, most: usize) -> Option<Vec<String>> {
+        if !self.has(name) {
+            return Some(Vec::new());
+        }
+        let read = |element: &Value| {
+            element.as_str().map(str::to_owned).ok_or_else(|| format!("must be a string, got {}", kind_of(element)))
+        };
+        self.list(name, [0, most], "strings", read)
     }
 
     /// Yes or no, with a default.
@@ -451,6 +464,11 @@ impl Object<'_> {
                 self.check(name, Err(format!("must be {word:?} or an object, got {got}")), Ok)
             }
         }
+    }
+
+    /// Whether the field is given and an object.
+    pub fn has_object(&self, name: &str) -> bool {
+        self.map.get(name).is_some_and(Value::is_object)
     }
 
     /// Whether the object in the field is of this kind by its `type`, whatever else is wrong with it.

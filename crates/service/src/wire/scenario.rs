@@ -12,7 +12,7 @@ use super::atmosphere::Atmosphere;
 use super::columns::{COLUMNS, Column, Known};
 use super::control::Control;
 use super::epoch::Instant;
-use super::events::{Condition, Event, MOST_EVENTS};
+use super::events::{Among, Condition, Event, MOST_EVENTS};
 use super::heating::Heating;
 use super::json::shown;
 use super::planet::Planet;
@@ -277,15 +277,20 @@ impl SimulateRequest {
         let stop = self.stop.to_core(self.angle_unit, &self.events);
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
         let mut across = Event::area_faults(&self.events, &self.vehicle);
+        across.extend(Event::parachute_faults(&self.events));
+        let is_angle_known =
+            self.epoch.is_none() || self.planet.is_earth() || self.initial_state.gives_sidereal();
+        across.extend(Event::frame_faults(&self.events, is_angle_known));
         across.extend(self.name_faults());
         let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
-        let initial_state = match initial_state {
-            Ok((state, _)) if of_planet.is_empty() => state,
+        let (initial_state, orientation) = match initial_state {
+            Ok(initial_state) if of_planet.is_empty() => initial_state,
             other => {
                 let of_state = other.err().unwrap_or_default();
                 return Err(of_planet.into_iter().chain(across).chain(of_state).collect());
             }
         };
+        let among = Among::new(&self.events, orientation.to_planet);
         let case = Case {
             planet,
             atmosphere: self.atmosphere.to_core(),
@@ -294,7 +299,7 @@ impl SimulateRequest {
             vehicle: self.vehicle.to_core(),
             control: self.control.to_core(self.angle_unit),
             heating: self.heating.map(Heating::to_core),
-            events: self.events.iter().map(|event| event.to_core(self.angle_unit, &self.events)).collect(),
+            events: self.events.iter().map(|event| event.to_core(self.angle_unit, &self.events, &among)).collect(),
             initial_state,
             stop,
             solver: self.solver.to_core(),
@@ -329,7 +334,9 @@ pub fn fault(fault: &scenario::Fault) -> Fault {
         | scenario::Fault::NoHeating { field }
         | scenario::Fault::NoHeading { field }
         | scenario::Fault::NoSuchEvent { field }
-        | scenario::Fault::NeverHappens { field } => format!("/{}", field.replace('.', "/")),
+        | scenario::Fault::NeverHappens { field }
+        | scenario::Fault::PropellantUnused { field }
+        | scenario::Fault::NoParachute { field, .. } => format!("/{}", field.replace('.', "/")),
         scenario::Fault::LowCeiling { .. } => "/stop/ceiling".to_owned(),
         scenario::Fault::NoNoseRadius => "/vehicle/nose_radius".to_owned(),
         scenario::Fault::OddShape { .. } => "/planet/polar_radius".to_owned(),

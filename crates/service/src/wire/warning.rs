@@ -120,6 +120,19 @@ impl Warning {
                 let detail = "the propellant was spent, and the thrust ended";
                 Self { time: Some(time), ..Self::new("propellant_spent", detail) }
             }
+            trajectory::Warning::ThrustWithoutDirection { event, time } => {
+                let detail = format!(
+                    "the thrust of event {event} has no direction where it is switched on: at rest there is no velocity, and in vertical \
+                     flight nothing level, along which it could act; it acts as soon as there is"
+                );
+                Self { time: Some(time), ..Self::new("no_direction", &detail) }
+            }
+            trajectory::Warning::NotDeployed { event, parachute, time } => {
+                let detail = format!(
+                    "event {event} releases the parachute of event {parachute}, which is not deployed at that time"
+                );
+                Self { time: Some(time), ..Self::new("not_deployed", &detail) }
+            }
             trajectory::Warning::NoDirection { event, time } => {
                 let detail = format!(
                     "the delta_v of event {event} changed nothing: at rest there is no velocity, and in vertical flight nothing normal, \
