@@ -9,6 +9,7 @@ use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
 use reentry::heating::{Convective, Heating, Radiative};
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
+use reentry::parachute::Parachute;
 use reentry::propulsion::{Axis, Impulse, Thrust};
 use reentry::scalar::{Lanes, Scalar};
 use reentry::sensitivity::{self, Gradient, Sensitivities};
@@ -271,11 +272,17 @@ fn sensitivities_hold_across_events() {
     let lighter = Effect { mass: Some(600.0), ..Effect::default() };
     let pushed = |along| Effect { impulse: Some(Impulse { along, speed_change: -150.0 }), ..Effect::default() };
     let burns = |along, propellant| {
-        let thrust = Thrust { along, force: -9000.0, specific_impulse: 250.0, propellant };
+        let thrust = Thrust { along, force: -9000.0, specific_impulse: Some(250.0), propellant };
         Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
     };
     let off = Effect { engine: Some(Engine::Off), ..Effect::default() };
     let altitude = |value| when(Quantity::Altitude, value);
+    let deploys = |drag_area, inflation_time, delay| {
+        let parachute = Parachute { drag_area, inflation_time, delay };
+        Effect { deploy: Some(parachute), ..Effect::default() }
+    };
+    let releases = |parachute| Effect { release: vec![parachute], ..Effect::default() };
+    let inertial = Axis::inertial([1.0, -2.0, 0.7]).unwrap();
     for (what, events) in [
         (
             "a vehicle that opens by dynamic pressure",
@@ -292,6 +299,25 @@ fn sensitivities_hold_across_events() {
         ("an impulse across", event(altitude(40e3), pushed(Axis::Normal))),
         ("an impulse by the angle", event(when(Quantity::FlightPathAngle, -0.6), pushed(Axis::Radial))),
         ("a burn to its end", event(altitude(60e3), burns(Axis::Velocity, Some(80.0)))),
+        ("an inertial impulse", event(altitude(40e3), pushed(inertial))),
+        ("a level impulse", event(altitude(40e3), pushed(Axis::Horizontal))),
+        ("a burn in inertial space", event(altitude(60e3), burns(inertial, Some(80.0)))),
+        ("a level burn", event(altitude(60e3), burns(Axis::Horizontal, Some(80.0)))),
+        (
+            "a parachute that opens at once",
+            event(Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 0.8) }, deploys(0.4, 0.0, 0.0)),
+        ),
+        ("a parachute that fills after a delay", event(altitude(60e3), deploys(0.4, 9.0, 2.5))),
+        (
+            "parachutes that follow each other, and a mass that changes as one fills, and burns",
+            vec![
+                Event { when: altitude(70e3), then: deploys(0.2, 12.0, 0.0) },
+                Event { when: altitude(62e3), then: burns(Axis::Velocity, Some(40.0)) },
+                Event { when: altitude(58e3), then: lighter.clone() },
+                Event { when: altitude(30e3), then: Effect { release: vec![0], ..deploys(0.5, 5.0, 1.0) } },
+                Event { when: altitude(9e3), then: releases(3) },
+            ],
+        ),
         (
             "a burn by the time",
             vec![

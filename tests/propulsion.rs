@@ -5,16 +5,19 @@ use std::sync::atomic::AtomicBool;
 use nalgebra::Vector3;
 use reentry::coordinates::{Inertial, OrbitalElements};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use reentry::planet::Shape;
 use reentry::propulsion::{Axis, Impulse, STANDARD_GRAVITY, Thrust};
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{Termination, Warning};
 use reentry::verification::verify;
-use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, PlanetFixed, Scenario, Stop, Vehicle};
+use reentry::{
+    Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, PlanetFixed, Scenario, Solver, Stop, Vehicle, Wind,
+};
 
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
-const THRUST: Thrust = Thrust { along: Axis::Velocity, force: -20_000.0, specific_impulse: 300.0, propellant: None };
+const THRUST: Thrust = Thrust { along: Axis::Velocity, force: -20_000.0, specific_impulse: Some(300.0), propellant: None };
 
 pub(crate) fn at(time: f64, then: Effect) -> Event {
     let when = Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising };
@@ -112,6 +115,10 @@ fn thrust_across_the_velocity_turns_it_to_the_left() {
     near("heading", last.flight_path.heading - first.flight_path.heading, change / first.flight_path.speed, 1e-5);
 }
 
+fn every_axis() -> [Axis; 5] {
+    [Axis::Velocity, Axis::Radial, Axis::Normal, Axis::Horizontal, Axis::inertial([3.0, -2.0, 1.5]).unwrap()]
+}
+
 /// Runge and Kutta's fourth-order method in inertial space, with the mass as a seventh number.
 fn inertial_flight(case: &Case, thrust: Thrust, end: f64) -> (Vector3<f64>, f64) {
     let planet = case.planet;
@@ -128,10 +135,16 @@ fn inertial_flight(case: &Case, thrust: Thrust, end: f64) -> (Vector3<f64>, f64)
             Axis::Velocity => relative.normalize(),
             Axis::Radial => position.normalize(),
             Axis::Normal => position.cross(&relative).normalize(),
+            Axis::Horizontal => {
+                let up = position.normalize();
+                (relative - up * up.dot(&relative)).normalize()
+            }
+            // The frames are aligned at the start.
+            Axis::Inertial(direction) => *direction,
         };
         [velocity, gravity + drag + direction * (thrust.force / mass)]
     };
-    let flow = thrust.force.abs() / (thrust.specific_impulse * STANDARD_GRAVITY);
+    let flow = thrust.specific_impulse.map_or(0.0, |seconds| thrust.force.abs() / (seconds * STANDARD_GRAVITY));
     let start = Inertial::from_planet_fixed(&case.initial_state, &planet, 0.0);
     let (mut state, mut mass) = ([start.position, start.velocity], case.vehicle.mass);
     let steps = 20_000_u32;
@@ -161,9 +174,9 @@ fn thrust_flies_as_in_an_integration_of_mass_and_motion_in_inertial_space() {
         ..FlightPath::from_planet_fixed(&orbit().initial_state)
     };
     let planet = Planet::EARTH_WGS84.spherical();
-    for along in [Axis::Velocity, Axis::Radial, Axis::Normal] {
+    for (along, specific_impulse) in every_axis().into_iter().zip([Some(300.0), None].into_iter().cycle()) {
         for force in [-15_000.0, 10_000.0] {
-            let thrust = Thrust { along, force, ..THRUST };
+            let thrust = Thrust { along, force, specific_impulse, ..THRUST };
             let case = Case {
                 planet,
                 atmosphere: Atmosphere::EARTH_JAMESON,
@@ -192,7 +205,7 @@ fn energy_is_balanced_under_thrust_and_impulses() {
         radius: 6_500_000.0,
         ..FlightPath::from_planet_fixed(&orbit().initial_state)
     };
-    for along in [Axis::Velocity, Axis::Radial, Axis::Normal] {
+    for along in every_axis() {
         let case = Case {
             planet: Planet::EARTH_WGS84,
             atmosphere: Atmosphere::Us76,
@@ -211,7 +224,11 @@ fn energy_is_balanced_under_thrust_and_impulses() {
         assert!(verification.energy_drift < 1e-8 * scale, "{along:?}: {verification:?}");
         assert!(verification.distance < 1.0, "{along:?}: {verification:?}");
         let works = verification.thrust_work;
-        assert!(if along == Axis::Velocity { works < -1e5 } else { works.abs() < 2e5 }, "{along:?}: {works}");
+        match along {
+            Axis::Velocity | Axis::Horizontal => assert!(works < -1e5, "{along:?}: {works}"),
+            Axis::Radial | Axis::Normal => assert!(works.abs() < 2e5, "{along:?}: {works}"),
+            Axis::Inertial(_) => assert!(works.abs() > 1e4, "{along:?}: {works}"),
+        }
         assert!(miss(&fly(&case), &fly(&spherical(case.clone()))) < 0.1, "{along:?}");
     }
 }
@@ -310,7 +327,13 @@ fn thrust_that_burns_the_whole_vehicle_is_an_error() {
 fn an_impulse_without_a_direction_does_nothing_and_says_so() {
     let still = FlightPath { speed: 0.0, ..FlightPath::from_planet_fixed(&orbit().initial_state) };
     let down = FlightPath { speed: 100.0, flight_path_angle: -std::f64::consts::FRAC_PI_2, ..still };
-    for (start, along) in [(still, Axis::Velocity), (still, Axis::Normal), (down, Axis::Normal)] {
+    for (start, along) in [
+        (still, Axis::Velocity),
+        (still, Axis::Normal),
+        (still, Axis::Horizontal),
+        (down, Axis::Normal),
+        (down, Axis::Horizontal),
+    ] {
         let plain = Case { initial_state: start.to_planet_fixed(), ..orbit() };
         let pushed = fly(&Case { events: vec![at(0.0, push(along, 10.0))], ..plain.clone() });
         assert!(
@@ -326,6 +349,235 @@ fn an_impulse_without_a_direction_does_nothing_and_says_so() {
         ..orbit()
     });
     assert!(outward.warnings().is_empty());
+}
+
+/// A lander 1 km above the Moon, which does not turn.
+fn lander(speed: f64, flight_path_angle: f64) -> Case {
+    let planet = Planet {
+        gravitational_parameter: 4.9028e12,
+        rotation_rate: 0.0,
+        shape: Shape::Sphere { radius: MOON },
+        ..Planet::EARTH_WGS84.spherical()
+    };
+    let start = FlightPath {
+        radius: MOON + 1000.0,
+        longitude: 0.1,
+        geocentric_latitude: 0.2,
+        speed,
+        flight_path_angle,
+        heading: 0.3,
+    };
+    Case {
+        planet,
+        vehicle: vehicle(15_000.0, 0.0, 0.0, 0.0),
+        control: Control::banked(0.0),
+        initial_state: start.to_planet_fixed(),
+        stop: Stop { time: 3000.0, ..Stop::default() },
+        ..in_vacuum(target_2())
+    }
+}
+
+const MOON: f64 = 1_737_400.0;
+const BRAKE: Thrust =
+    Thrust { along: Axis::Velocity, force: -45_000.0, specific_impulse: Some(311.0), propellant: None };
+
+/// A lander that a braking thrust, at once, brings to rest: when, and how high above the start; by Runge and Kutta's fourth-order method,
+/// with steps of a hundredth of the time to rest.
+fn braked_to_rest(case: &Case, thrust: Thrust) -> (f64, f64) {
+    let rates = |[position, velocity]: [Vector3<f64>; 2], time: f64| {
+        let mass = case.vehicle.mass - thrust.mass_flow() * time;
+        let gravity = position * (-case.planet.gravitational_parameter / position.norm().powi(3));
+        [velocity, gravity + velocity.normalize() * (thrust.force / mass)]
+    };
+    let PlanetFixed { position, velocity } = case.initial_state;
+    let (mut state, mut time) = ([position, velocity], 0.0);
+    while state[1].norm() > 1e-7 {
+        let h = 0.01 * state[1].norm() / (thrust.force.abs() / case.vehicle.mass);
+        let moved = |rate: [Vector3<f64>; 2], h: f64| [state[0] + rate[0] * h, state[1] + rate[1] * h];
+        let one = rates(state, time);
+        let two = rates(moved(one, h / 2.0), time + h / 2.0);
+        let three = rates(moved(two, h / 2.0), time + h / 2.0);
+        let four = rates(moved(three, h), time + h);
+        state = [0, 1].map(|i| state[i] + (one[i] + (two[i] + three[i]) * 2.0 + four[i]) * (h / 6.0));
+        time += h;
+    }
+    (time, state[0].norm() - position.norm())
+}
+
+/// A burn that brakes a lander to rest ends there, at once and by its name: its thrust has no direction any more.
+#[test]
+fn a_braking_burn_to_rest_ends_by_its_name() {
+    let down = -std::f64::consts::FRAC_PI_2;
+    let mut oblique = 0;
+    for (speed, flight_path_angle) in [(20.0, down), (30.0, down + 0.3), (60.0, -0.7), (50.0, 0.0), (40.0, 0.8)] {
+        let plain = lander(speed, flight_path_angle);
+        let (time, climb) = braked_to_rest(&plain, BRAKE);
+        let events = vec![at(0.0, Effect { mass: Some(15_000.0), ..Effect::default() }), at(0.0, switch_on(BRAKE))];
+        let case = Case { events, solver: Solver { step_limit: 200, ..plain.solver }, ..plain };
+        for tolerance in [1e-14, 1e-10, 1e-7, 1e-5] {
+            let case = with_tolerance(case.clone(), tolerance);
+            let ways = if flight_path_angle == down { vec![case] } else { vec![case.clone(), spherical(case)] };
+            oblique += ways.len() - 1;
+            for case in ways {
+                let Err(SimulationError::NoDirection { event: 1, time: found, altitude }) = try_to_fly(&case) else {
+                    panic!("{speed} m/s at {flight_path_angle}, {tolerance}: {:?}", try_to_fly(&case).map(|_| ()))
+                };
+                // Rest is where the steps resolve no more speed: a part of the circular speed of 1680 m/s, in a deceleration of 1 m/s².
+                let off = 1e-4 + 1680.0 * tolerance;
+                near("time", found, time, 10.0 * off);
+                near("altitude", altitude, 1000.0 + climb, 100.0 * off);
+            }
+        }
+    }
+    assert!(oblique > 10);
+}
+
+/// In air, over a planet that turns, falling from high up: the thrust brakes as long as there is a direction.
+#[test]
+fn a_braking_burn_in_air_over_a_turning_planet_ends_at_rest() {
+    let start = FlightPath {
+        radius: 6_379_137.0,
+        speed: 90.0,
+        flight_path_angle: -1.2,
+        ..FlightPath::from_planet_fixed(&orbit().initial_state)
+    };
+    let brake = Thrust { force: -80_000.0, ..BRAKE };
+    for wind in [Wind::Still, Wind::Constant { east: 10.0, north: -5.0 }] {
+        let case = Case {
+            planet: Planet::EARTH_WGS84,
+            atmosphere: Atmosphere::Us76,
+            wind,
+            initial_state: start.to_planet_fixed(),
+            events: vec![at(0.0, switch_on(brake))],
+            solver: Solver { step_limit: 300, ..orbit().solver },
+            stop: Stop { altitude: -2e4, ..Stop::default() },
+            ..orbit()
+        };
+        for case in [case.clone(), spherical(case.clone()), with_tolerance(case, 1e-4)] {
+            let error = try_to_fly(&case).map(|_| ()).unwrap_err();
+            assert!(matches!(error, SimulationError::NoDirection { event: 0, .. }), "{error:?}");
+        }
+    }
+}
+
+/// Rest is the place to switch the engine off: a condition on the speed 0 is met there.
+#[test]
+fn a_burn_may_end_where_the_vehicle_is_at_rest() {
+    let plain = lander(20.0, -std::f64::consts::FRAC_PI_2);
+    let (time, climb) = braked_to_rest(&plain, BRAKE);
+    let when = Condition { quantity: Quantity::Speed, value: 0.0, direction: Direction::Falling };
+    let burning = vec![at(0.0, switch_on(BRAKE))];
+    let stopped =
+        fly(&Case { events: burning.clone(), stop: Stop { when: vec![when], ..Stop::default() }, ..plain.clone() });
+    assert_eq!(stopped.termination(), Termination::Condition(0));
+    near("time", stopped.end_time(), time, 1e-6);
+    near("speed", stopped.last().flight_path.speed, 0.0, 0.0);
+    let off = vec![burning[0].clone(), Event { when, then: switch_off() }];
+    let dropped = fly(&Case { events: off, ..plain });
+    assert_eq!(dropped.termination(), Termination::SurfaceImpact);
+    // From rest at the height h: v²/2 = μ (1/r - 1/(r + h)).
+    let height = 1000.0 + climb;
+    let speed = (2.0 * 4.9028e12 * (1.0 / MOON - 1.0 / (MOON + height))).sqrt();
+    near("speed at the ground", dropped.last().flight_path.speed, speed, 1e-6);
+}
+
+/// A burn that ends a moment before rest, and one that is too weak for it, go on.
+#[test]
+fn a_burn_that_passes_near_rest_goes_on() {
+    let plain = lander(20.0, -std::f64::consts::FRAC_PI_2);
+    let (time, _) = braked_to_rest(&plain, BRAKE);
+    for before in [1e-1, 1e-4, 1e-6] {
+        let events = vec![at(0.0, switch_on(BRAKE)), at(time - before, switch_off())];
+        let flight = fly(&Case { events, ..plain.clone() });
+        assert_eq!(flight.termination(), Termination::SurfaceImpact, "{before} s before rest");
+    }
+    // Thrown upward under half its weight, it turns, and the thrust with it: up and down by hand, in a field that hardly changes.
+    let up = lander(20.0, std::f64::consts::FRAC_PI_2);
+    let gravity = 4.9028e12 / MOON.powi(2);
+    let weak = Thrust { force: -0.5 * gravity * 15_000.0, specific_impulse: None, ..BRAKE };
+    for case in [up.clone(), with_tolerance(up, 1e-5)] {
+        let solver = Solver { step_limit: 1000, ..case.solver };
+        let flight = fly(&Case { events: vec![at(0.0, switch_on(weak))], solver, ..case });
+        let climb = 20.0 * 20.0 / (2.0 * 1.5 * gravity);
+        relative("climb", flight.peaks().altitude.value - 1000.0, climb, 2e-3);
+        let speed = (2.0 * 0.5 * gravity * (1000.0 + climb)).sqrt();
+        relative("speed at the ground", flight.last().flight_path.speed, speed, 2e-3);
+    }
+}
+
+/// The level part of the velocity is braked away, in vertical flight the thrust fades, and the vehicle falls on.
+#[test]
+fn a_level_burn_fades_in_vertical_flight_and_the_flight_goes_on() {
+    let brake = Thrust { along: Axis::Horizontal, ..BRAKE };
+    for rotation_rate in [0.0, 2.66e-6] {
+        for flight_path_angle in [0.3, 0.0, -0.5] {
+            let plain = lander(50.0, flight_path_angle);
+            let planet = Planet { rotation_rate, ..plain.planet };
+            let solver = Solver { step_limit: 1000, ..plain.solver };
+            let case = Case { planet, solver, events: vec![at(0.0, switch_on(brake))], ..plain };
+            for case in [case.clone(), with_tolerance(case.clone(), 1e-6), spherical(case)] {
+                let flight = fly(&case);
+                let last = flight.last().flight_path;
+                assert_eq!(flight.termination(), Termination::SurfaceImpact);
+                let level = last.speed * last.flight_path_angle.cos();
+                assert!(level < 1.1e-3 * last.speed, "{flight_path_angle}: {level} of {} m/s", last.speed);
+                assert!(
+                    flight.warnings().iter().any(|warning| matches!(warning, Warning::LiftFadedNearVertical { .. })),
+                    "{:?}",
+                    flight.warnings()
+                );
+            }
+        }
+    }
+}
+
+/// A thrust that is switched on where it has no direction says so, and acts as soon as it has one.
+#[test]
+fn a_thrust_from_rest_says_that_it_has_no_direction_yet() {
+    let still = lander(0.0, 0.0);
+    let gravity = 4.9028e12 / (MOON + 1000.0).powi(2);
+    let ahead = Thrust { force: 15_000.0, specific_impulse: None, ..BRAKE };
+    let stop = Stop { time: 5.0, ..Stop::default() };
+    let flight = fly(&Case { events: vec![at(0.0, switch_on(ahead))], stop, ..still.clone() });
+    assert!(
+        matches!(flight.warnings(), [Warning::ThrustWithoutDirection { event: 0, time: 0.0 }]),
+        "{:?}",
+        flight.warnings()
+    );
+    // It falls, and the thrust with it.
+    relative("speed", flight.last().flight_path.speed, 5.0 * (gravity + 1.0), 1e-4);
+    // A braking thrust stops whatever begins.
+    let brakes = Case { events: vec![at(0.0, switch_on(BRAKE))], ..still.clone() };
+    let Err(SimulationError::NoDirection { event: 0, time, altitude }) = try_to_fly(&brakes) else {
+        panic!("{:?}", try_to_fly(&brakes).map(|_| ()))
+    };
+    near("at once", time, 0.0, 0.0);
+    near("altitude", altitude, 1000.0, 1e-6);
+    // Upward there is a direction at rest, and in inertial space.
+    for along in [Axis::Radial, Axis::inertial([0.0, 0.0, 1.0]).unwrap()] {
+        let stop = Stop { time: 5.0, ..Stop::default() };
+        let events = vec![at(0.0, switch_on(Thrust { along, ..ahead }))];
+        assert!(fly(&Case { events, stop, ..still.clone() }).warnings().is_empty());
+    }
+}
+
+/// An impulse in inertial space is one in inertial components, whenever it comes; an orbit has no other memory of the frame.
+#[test]
+fn an_inertial_impulse_changes_the_inertial_velocity() {
+    let planet = Planet::EARTH_WGS84.spherical();
+    let direction = Vector3::new(1.0, -2.0, 0.5);
+    let along = Axis::inertial(direction.into()).unwrap();
+    let case = Case { planet, events: vec![at(300.0, push(along, 80.0))], ..orbit() };
+    let flight = fly(&case);
+    let event = flight.events().next().unwrap();
+    let [before, after] = [event.before, event.after].map(|point| {
+        Inertial::from_planet_fixed(&point.flight_path.to_planet_fixed(), &planet, point.time).velocity
+    });
+    assert!((after - before - direction.normalize() * 80.0).norm() < 1e-8, "{}", after - before);
+    // On axes that are turned from the inertial ones, the same direction has other components.
+    let Axis::Inertial(turned) = along.along_axes_turned_by(0.3) else { unreachable!() };
+    let expected = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 0.3) * turned.into_inner();
+    assert!((expected - direction.normalize()).norm() < 1e-15);
 }
 
 /// A ballistic coefficient is of the mass: as it burns, the drag area stays.

@@ -1,6 +1,8 @@
 //! Where a thrust along the velocity has no direction: at rest.
 
-use super::Forces;
+use nalgebra::Vector3;
+
+use super::{Burn, Forces};
 use crate::coordinates::PlanetFixed;
 use crate::propulsion::Axis;
 use crate::scalar::length;
@@ -9,9 +11,6 @@ use crate::scalar::length;
 const AT_REST: f64 = 1e-10;
 /// The part of the way to rest that a step may go.
 const WAY_TO_REST: f64 = 0.9;
-/// Where the part of the acceleration at rest that a level thrust cannot withstand is greater than this part of the thrust, rest does not
-/// last.
-const UPRIGHT: f64 = 1e-9;
 
 impl Forces {
     /// Whether the vehicle is at rest, as far as steps resolve it.
@@ -28,26 +27,18 @@ impl Forces {
         })
     }
 
-    /// Whether a braking thrust would stop every motion that could begin if the vehicle were at rest here: it acts against the velocity,
-    /// and is greater than what all other forces together are at rest. Then a vehicle that comes to rest stays there, and its thrust has
-    /// no direction.
+    /// Whether a vehicle that the thrust brings to rest here stays at rest: the thrust acts against the velocity, and is as great as all
+    /// other forces together on the vehicle at rest, so that it stops every motion as it begins.
     pub(crate) fn brakes_to_rest(&self, time: f64, state: &PlanetFixed<f64>) -> bool {
-        let Some(burn) = self.burn.as_ref().filter(|burn| burn.acceleration < 0.0) else { return false };
-        let still = PlanetFixed { velocity: nalgebra::Vector3::zeros(), ..*state };
-        let thrust = -burn.acceleration * burn.lightness(time);
-        match burn.along {
-            Axis::Velocity => self.acceleration(time, &still).norm() <= thrust,
-            Axis::Horizontal => {
-                let others = self.acceleration(time, &still);
-                let upright = others.dot(&state.position) / length(&state.position);
-                others.norm() <= thrust && upright.abs() <= UPRIGHT * thrust
-            }
-            Axis::Radial | Axis::Normal | Axis::Inertial(_) => false,
-        }
+        let brakes = |burn: &&Burn<f64>| burn.along == Axis::Velocity && burn.acceleration < 0.0;
+        self.burn.as_ref().filter(brakes).is_some_and(|burn| {
+            let still = PlanetFixed { velocity: Vector3::zeros(), ..*state };
+            self.acceleration(time, &still).norm() <= -burn.acceleration * burn.lightness(time)
+        })
     }
 
-    /// The longest step before a braking thrust brings the vehicle to rest, s: beyond, the thrust would push it the other way, and the
-    /// integrator would grind its steps down.
+    /// The longest step before a braking thrust brings the vehicle to rest, s: beyond, the thrust would push it the other way, and there
+    /// an integrator grinds its steps down.
     pub(super) fn longest_braking(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
         if !self.brakes_to_rest(time, state) {
             return f64::INFINITY;
