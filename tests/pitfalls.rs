@@ -8,7 +8,7 @@ use reentry::motion::Singularity;
 use reentry::scenario::Fault;
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{Sampling, Termination, Warning};
-use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, simulate};
+use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Wind, simulate};
 
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
@@ -156,6 +156,54 @@ fn the_cartesian_formulation_flies_over_poles_from_rest_and_straight_down() {
         assert_eq!(flight.termination(), Termination::SurfaceImpact, "{state:?}");
         assert!(flight.statistics().steps < 1000, "{state:?}: {:?}", flight.statistics());
     }
+}
+
+/// Wind to the north blows towards the pole from all sides. What drifts with it is carried there, and slows down as the wind fades: by an
+/// integration of the distance alone, since a light body has the speed of the air.
+#[test]
+fn wind_towards_the_pole_fades_there() {
+    let radius = 6_378_137.0;
+    let planet = Planet { rotation_rate: 0.0, ..Planet::EARTH_WGS84.spherical() };
+    let fade = |distance: f64| {
+        let x = (distance / (1e-3 * radius)).min(1.0);
+        x.powi(3) * (10.0 - 15.0 * x + 6.0 * x * x)
+    };
+    let start = |distance: f64| FlightPath {
+        radius: radius + 9e3,
+        longitude: 0.3,
+        geocentric_latitude: FRAC_PI_2 - distance / radius,
+        speed: 8.0,
+        flight_path_angle: -1.5,
+        heading: 0.2,
+    };
+    for (distance, east, north) in [(15e3, 0.0, 20.0), (3e3, 0.0, 20.0), (500.0, 5.0, 20.0), (8e3, 30.0, 20.0)] {
+        let case = Case {
+            planet,
+            atmosphere: Atmosphere::EARTH_JAMESON,
+            wind: Wind::Constant { east, north },
+            vehicle: vehicle(0.1, 0.05, 0.0, 1.0),
+            control: Control::banked(0.0),
+            solver: Solver { step_limit: 5000, ..Solver::default() },
+            ..starting(target_2(), start(distance))
+        };
+        let flight = fly(&case);
+        assert_eq!(flight.termination(), Termination::SurfaceImpact);
+        let warned = flight.warnings().iter().any(|warning| matches!(warning, Warning::WindFadedNearPole { .. }));
+        assert!(warned, "{distance}: {:?}", flight.warnings());
+        let mut expected = distance;
+        let steps = 100_000;
+        for _ in 0..steps {
+            expected -= north * fade(expected) * flight.end_time() / f64::from(steps);
+        }
+        let last = flight.last().flight_path.to_planet_fixed().position;
+        // At first the body has not yet the speed of the air, and later keeps a little of it: some seconds of the wind.
+        near(&format!("from {distance} m"), last.x.hypot(last.y), expected, 20.0 + 0.01 * expected);
+        assert!(expected < 0.9 * distance, "the test cannot tell: {expected} m");
+        assert!(miss(&flight, &fly(&spherical(case))) < 1e-2);
+    }
+    // Away from the pole the wind is whole, and nobody is warned.
+    let away = Case { wind: Wind::Constant { east: 0.0, north: -20.0 }, ..starting(target_2(), start(7e3)) };
+    assert!(!fly(&away).warnings().iter().any(|warning| matches!(warning, Warning::WindFadedNearPole { .. })));
 }
 
 #[test]

@@ -13,8 +13,9 @@ use crate::atmosphere::AtmosphereSample;
 use crate::coordinates::{FlightPath, GreatCircle, Inertial, PlanetFixed, latitude_and_altitude};
 use crate::heating;
 use crate::integrate::Statistics;
-use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical};
+use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical, WIND_FADE_ANGLE};
 use crate::scenario::{Case, Equations, Phase};
+use crate::wind::Wind;
 
 pub use crate::motion::Lookup;
 
@@ -99,6 +100,11 @@ pub enum Warning {
         /// s.
         time: f64,
     },
+    /// From this time on the flight came so near a pole that the wind was faded out; see [`crate::motion::WIND_FADE_ANGLE`].
+    WindFadedNearPole {
+        /// At the end of a step, s.
+        time: f64,
+    },
     /// From this time on a table was asked for more than it holds, and gave what it has at its edge.
     OutsideTable {
         /// Which.
@@ -163,6 +169,7 @@ impl Warning {
     pub fn time(&self) -> f64 {
         match *self {
             Self::LiftFadedNearVertical { time }
+            | Self::WindFadedNearPole { time }
             | Self::OutsideTable { time, .. }
             | Self::OutsideRange { time, .. }
             | Self::PropellantSpent { time }
@@ -290,6 +297,8 @@ impl Trajectory {
         let mut flight = Self { case, flown, great_circle };
         let ranges = flight.outside_ranges();
         flight.flown.warnings.extend(ranges);
+        let faded = flight.wind_fades().map(|time| Warning::WindFadedNearPole { time });
+        flight.flown.warnings.extend(faded);
         flight.flown.warnings.sort_by(|a, b| a.time().total_cmp(&b.time()));
         flight
     }
@@ -316,6 +325,19 @@ impl Trajectory {
         };
         let convective = of_peak(peaks.convective_heat_flux, heating.convective.range());
         convective.chain(of_peak(peaks.radiative_heat_flux, heating.radiative.range())).collect()
+    }
+
+    /// The end of the first step that ends where the wind has faded, s.
+    fn wind_fades(&self) -> Option<f64> {
+        let motion = match self.case.wind {
+            Wind::Still => return None,
+            Wind::Constant { .. } | Wind::Table(_) => self.motion(self.flown.legs.first()?),
+        };
+        let fades = |leg: &&Leg| {
+            let position = motion.end(&leg.step).position;
+            position.x.hypot(position.y) < WIND_FADE_ANGLE * position.norm()
+        };
+        self.flown.legs.iter().find(fades).map(Leg::end_time)
     }
 
     /// How the flight ended.

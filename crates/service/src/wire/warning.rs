@@ -71,6 +71,10 @@ impl Warning {
                               lift fades out there";
                 Self { time: Some(time), ..Self::new("lift_faded_near_vertical", detail) }
             }
+            trajectory::Warning::WindFadedNearPole { time } => {
+                let detail = "the wind fades out within 0.001 rad of a pole, where there is neither east nor north";
+                Self { time: Some(time), ..Self::new("wind_faded_near_pole", detail) }
+            }
             trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
                 let (table, edge, holds) = match table {
                     Lookup::Atmosphere => (
