@@ -202,6 +202,7 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             "dependentSchemas",
             json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
         )],
+        "Thrust" => vec![("dependentRequired", json!({"propellant": ["specific_impulse"]}))],
         "Schedule" => {
             let at = |bound: Value| json!({"properties": {"at": {"items": bound}}});
             vec![
@@ -339,6 +340,10 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("position/items", distance),
             ("velocity", json!({"minItems": 3, "maxItems": 3})),
             ("velocity/items", if name == "Ecef" { bounded(-1e6, 1e6) } else { json!({}) }),
+        ],
+        "InertialDirection" => vec![
+            ("frame", json!({"enum": ["inertial"]})),
+            ("direction", json!({"minItems": 3, "maxItems": 3, "contains": {"not": {"const": 0}}})),
         ],
         "Output" => vec![
             ("times/items", not_negative),

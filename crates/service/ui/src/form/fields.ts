@@ -20,6 +20,10 @@ export type Field =
   | { kind: 'several'; label: string; words: readonly string[] }
   /** A number, or a schedule. */
   | { kind: 'command'; label: string }
+  /** A direction: a word, or one in inertial space. */
+  | { kind: 'along'; label: string; words: Record<string, string> }
+  /** Names in a line, apart by commas. */
+  | { kind: 'names'; label: string; hint?: string }
   /** A thrust, or `"off"`. */
   | { kind: 'thrust'; label: string }
   | { kind: 'group'; label: string; schema: string; fields: Fields; isOptional?: string }
@@ -332,9 +336,14 @@ const CONDITION: Field = {
 };
 
 const ALONG: Field = {
-  kind: 'words',
+  kind: 'along',
   label: 'Along',
-  words: { velocity: 'the velocity', radial: 'the radius, outwards', normal: 'the normal, left' } satisfies Record<Schemas['Axis'], string>,
+  words: {
+    velocity: 'the velocity',
+    horizontal: 'the velocity’s level part',
+    radial: 'the radius, outwards',
+    normal: 'the normal, left',
+  } satisfies Record<Schemas['Axis'], string>,
 };
 
 /** A thrust that is switched on. */
@@ -357,6 +366,19 @@ const EFFECT = {
     fields: { along: ALONG, value: n('Change of speed', 'm/s') } satisfies Of<Schemas['DeltaV']>,
   },
   thrust: { kind: 'thrust', label: 'Thrust' },
+  deploy: {
+    kind: 'group',
+    label: 'Parachute',
+    schema: 'Parachute',
+    isOptional: 'A parachute',
+    fields: {
+      name: { kind: 'text', label: 'Name' },
+      drag_area: n('Drag area', 'm²'),
+      inflation_time: n('Inflation time', 's'),
+      delay: n('Delay', 's'),
+    } satisfies Of<Schemas['Parachute']>,
+  },
+  release: { kind: 'names', label: 'Release', hint: 'names of parachutes' },
 } satisfies Of<Schemas['Effect']>;
 
 const COLUMNS = [

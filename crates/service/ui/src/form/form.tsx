@@ -124,6 +124,19 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
       return <Variant field={field} path={path} property={property} />;
     case 'command':
       return <Command label={field.label} path={path} property={property} />;
+    case 'along':
+      return <Along label={field.label} words={field.words} path={path} property={property} />;
+    case 'names':
+      return (
+        <Line label={field.label} path={path} property={property}>
+          <TextInput
+            {...inputOf(path, true, property)}
+            value={(value as string[] | undefined)?.join(', ')}
+            placeholder={field.hint}
+            onValue={(names) => put(path, names?.split(',').map((name) => name.trim()))}
+          />
+        </Line>
+      );
     case 'thrust':
       return <Thrust label={field.label} path={path} property={property} />;
     case 'list':
@@ -610,6 +623,41 @@ function Thrust({ label, path, property }: { label: string; path: Path; property
         </select>
       </Line>
       {state === 'on' && <Members fields={THRUST} schema="Thrust" path={path} />}
+    </div>
+  );
+}
+
+interface AlongProps {
+  label: string;
+  words: Record<string, string>;
+  path: Path;
+  property?: Property | undefined;
+}
+
+/** One of several words, or a direction in inertial space. */
+function Along({ label, words, path, property }: AlongProps) {
+  const value = get(draft.value, path);
+  const isInertial = typeof value === 'object' && value !== null;
+  const start = { frame: 'inertial', direction: [0, 0, 1] };
+  const change = (next: string) => put(path, next === 'inertial' ? start : next);
+  return (
+    <div class="group">
+      <Line label={label} path={path} property={property}>
+        <select
+          {...select(path)}
+          value={isInertial ? 'inertial' : String(value ?? '')}
+          onChange={(event) => change(event.currentTarget.value)}
+        >
+          {value === undefined && <option value="">choose</option>}
+          {Object.entries(words).map(([word, meaning]) => (
+            <option key={word} value={word}>
+              {meaning}
+            </option>
+          ))}
+          <option value="inertial">a direction in inertial space</option>
+        </select>
+      </Line>
+      {isInertial && <Vector label="Direction" unit="inertial, of any length" path={[...path, 'direction']} />}
     </div>
   );
 }
