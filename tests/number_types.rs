@@ -305,7 +305,10 @@ fn sensitivities_hold_across_events() {
         ("a level burn", event(altitude(60e3), burns(Axis::Horizontal, Some(80.0)))),
         (
             "a parachute that opens at once",
-            event(Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 0.8) }, deploys(0.4, 0.0, 0.0)),
+            event(
+                Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 0.8) },
+                deploys(0.4, 0.0, 0.0),
+            ),
         ),
         ("a parachute that fills after a delay", event(altitude(60e3), deploys(0.4, 9.0, 2.5))),
         (

@@ -17,7 +17,8 @@ use reentry::{
 use crate::check::{near, relative};
 use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
-const THRUST: Thrust = Thrust { along: Axis::Velocity, force: -20_000.0, specific_impulse: Some(300.0), propellant: None };
+const THRUST: Thrust =
+    Thrust { along: Axis::Velocity, force: -20_000.0, specific_impulse: Some(300.0), propellant: None };
 
 pub(crate) fn at(time: f64, then: Effect) -> Event {
     let when = Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising };
@@ -570,14 +571,14 @@ fn an_inertial_impulse_changes_the_inertial_velocity() {
     let case = Case { planet, events: vec![at(300.0, push(along, 80.0))], ..orbit() };
     let flight = fly(&case);
     let event = flight.events().next().unwrap();
-    let [before, after] = [event.before, event.after].map(|point| {
-        Inertial::from_planet_fixed(&point.flight_path.to_planet_fixed(), &planet, point.time).velocity
-    });
+    let [before, after] = [event.before, event.after]
+        .map(|point| Inertial::from_planet_fixed(&point.flight_path.to_planet_fixed(), &planet, point.time).velocity);
     assert!((after - before - direction.normalize() * 80.0).norm() < 1e-8, "{}", after - before);
     // On axes that are turned from the inertial ones, the same direction has other components.
-    let Axis::Inertial(turned) = along.along_axes_turned_by(0.3) else { unreachable!() };
-    let expected = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 0.3) * turned.into_inner();
-    assert!((expected - direction.normalize()).norm() < 1e-15);
+    let to_others = nalgebra::Rotation3::from_euler_angles(0.3, -1.2, 0.4);
+    let Axis::Inertial(rotated) = along.rotated_by(&to_others) else { unreachable!() };
+    assert!((to_others.inverse() * rotated.into_inner() - direction.normalize()).norm() < 1e-15);
+    assert_eq!(Axis::Normal.rotated_by(&to_others), Axis::Normal);
 }
 
 /// A ballistic coefficient is of the mass: as it burns, the drag area stays.

@@ -122,7 +122,8 @@ async fn coefficients_of_an_area_need_one_and_others_take_none() {
     for vehicle in [capsule(), ballistic_capsule()] {
         let request =
             with(&vehicle, "/events", json!([then(&json!({"reference_area": 5, "aerodynamics": ballistic()}))]));
-        let expected = [(at, "is not a field here; the fields are mass, aerodynamics, delta_v, thrust")];
+        let expected =
+            [(at, "is not a field here; the fields are mass, aerodynamics, delta_v, thrust, deploy, release")];
         steady.refused_at("/simulate", &request, &expected).await;
     }
     for name in ["mach_table", "alpha_mach_table"] {
@@ -199,11 +200,68 @@ async fn thrust_is_off_or_an_object() {
         steady.refused_at("/simulate", &request, &[("/events/0/then/thrust", &phrase)]).await;
     }
     let expected = [
-        ("/events/0/then/thrust/along", "is required; it must be one of velocity, radial, normal"),
+        ("/events/0/then/thrust/along", "is required; it must be one of velocity, radial, normal, horizontal"),
         ("/events/0/then/thrust/value", "is required"),
-        ("/events/0/then/thrust/specific_impulse", "is required"),
     ];
     steady.refused_at("/simulate", &eventful(&[then(&json!({"thrust": {}}))]), &expected).await;
+}
+
+#[tokio::test]
+async fn faults_of_directions_and_of_propellant_name_their_place() {
+    let steady = Steady::new().await;
+    let along = |direction: Value| json!({"frame": "inertial", "direction": direction});
+    let thrust = |along: Value| json!({"thrust": {"along": along, "value": 10}});
+    let push = |along: Value| json!({"delta_v": {"along": along, "value": 10}});
+    for (place, effect) in [("thrust", &thrust as &dyn Fn(Value) -> Value), ("delta_v", &push)] {
+        let at = |name: &str| format!("/events/0/then/{place}/along{name}");
+        for (given, name, phrase) in [
+            (along(json!([0, 0, 0])), "/direction", "must not be [0, 0, 0], which has no direction"),
+            (along(json!([0, -0.0, 0])), "/direction", "must not be [0, 0, 0]"),
+            (along(json!([1, 0])), "/direction", "must have 3 numbers, got 2"),
+            (along(json!([1, 0, "z"])), "/direction/2", "must be a number, got a string"),
+            (json!({"frame": "gcrf", "direction": [1, 0, 0]}), "/frame", "must be one of inertial, got \"gcrf\""),
+            (json!({"direction": [1, 0, 0]}), "/frame", "is required; it must be one of inertial"),
+            (json!({"frame": "inertial"}), "/direction", "is required"),
+            (json!("inertial"), "", "must be one of velocity, radial, normal, horizontal, got \"inertial\""),
+        ] {
+            let request = eventful(&[then(&effect(given))]);
+            steady.refused_at("/simulate", &request, &[(&at(name), phrase)]).await;
+        }
+        for direction in [[5e-324, 0.0, 0.0], [f64::MAX, f64::MIN, f64::MAX]] {
+            let request = eventful(&[then(&effect(along(json!(direction))))]);
+            good_answer(&steady.service, "/simulate", &request).await;
+        }
+    }
+    let unburnt = json!({"thrust": {"along": "radial", "value": 10, "propellant": 1}});
+    let expected =
+        [("/events/0/then/thrust/propellant", "must be left out: without specific_impulse the thrust burns none")];
+    steady.refused_at("/simulate", &eventful(&[then(&unburnt)]), &expected).await;
+}
+
+#[tokio::test]
+async fn a_parachute_has_a_name_of_its_own_and_is_released_by_it() {
+    let steady = Steady::new().await;
+    let deploys = |name: &str| json!({"deploy": {"name": name, "drag_area": 10, "inflation_time": 1}});
+    let request = eventful(&[
+        then(&deploys("drogue")),
+        then(&deploys("main")),
+        then(&with(&deploys("drogue"), "/release", json!(["main", "mane", ""]))),
+        then(&with(&deploys("main"), "/release", json!(["drogue"]))),
+    ]);
+    let unknown = "must be the name of a parachute that an event deploys, got ";
+    let expected = [
+        ("/events/2/then/deploy/name", "must be a name of its own: a parachute is deployed once, this one by event 0"),
+        ("/events/3/then/deploy/name", "must be a name of its own: a parachute is deployed once, this one by event 1"),
+        ("/events/2/then/release/1", &format!("{unknown}\"mane\"")),
+        ("/events/2/then/release/2", &format!("{unknown}\"\"")),
+    ];
+    steady.refused_at("/simulate", &request, &expected).await;
+    let request = eventful(&[then(&json!({"release": "main"})), then(&json!({"release": [1, "a"]}))]);
+    let expected = [
+        ("/events/0/then/release", "must be an array of strings, got a string"),
+        ("/events/1/then/release/0", "must be a string, got a number"),
+    ];
+    steady.refused_at("/simulate", &request, &expected).await;
 }
 
 #[tokio::test]
@@ -251,7 +309,7 @@ async fn all_faults_of_events_and_heating_come_in_one_answer() {
         ("/events/0/then/mass", "must be greater than 0, got 0"),
         ("/events/0/then/reference_area", "must be at least 0, got -1"),
         ("/events/1/when/rises_through", "must be at least 0, got -1"),
-        ("/events/1/then/delta_v/along", "must be one of velocity, radial, normal, got \"up\""),
+        ("/events/1/then/delta_v/along", "must be one of velocity, radial, normal, horizontal, got \"up\""),
         ("/events/1/then/delta_v/value", "must be between -1000000 and 1000000"),
         ("/events/2/when", "is required"),
         ("/events/2/then/thrust/value", "must be a number, got a string"),

@@ -392,6 +392,70 @@ async fn an_impulse_without_a_direction_is_warned_of_with_its_place_in_the_list(
     assert_eq!(answer["events"][1]["state"], answer["events"][1]["after"]);
 }
 
+#[tokio::test]
+async fn a_thrust_without_a_direction_is_warned_of_and_one_without_mass_flow_keeps_the_mass() {
+    let rest = with(&entry(), "/initial_state/speed", 0);
+    let thrust = json!({"along": "velocity", "value": 3000});
+    let events = json!([event("time", "rises_through", 0.0, &json!({"thrust": thrust}))]);
+    let answer = fly(&with_all(&rest, [("/events", events), ("/stop", json!({"time": 20}))])).await;
+    assert_eq!(codes(&answer), ["no_direction"]);
+    let detail = answer["warnings"][0]["detail"].as_str().unwrap();
+    assert!(detail.starts_with("the thrust of event 0 has no direction where it is switched on"), "{detail}");
+    assert!(answer["final_state"].get("mass").is_none(), "nothing changes the mass");
+    // From 120 km it falls in 20 s by g = 9.44 m/s² and 3000/5500 m/s² of thrust.
+    check::relative("speed", number(&answer["final_state"]["speed"]), 20.0 * (9.44 + 3000.0 / 5500.0), 3e-3);
+}
+
+/// What is constant in inertial space has the components of inertial vectors, whatever the planet's angle is.
+#[tokio::test]
+async fn an_inertial_impulse_at_the_start_is_another_inertial_start() {
+    for (sidereal_time, epoch) in
+        [(json!(12_345.6), None), (json!("07:08:09"), None), (json!(null), Some("2026-11-26T12:00:00Z"))]
+    {
+        let eci = |velocity: [f64; 3]| {
+            let state = json!({"type": "eci", "position": [4e6, -5e6, 1.5e6], "velocity": velocity});
+            let state =
+                if sidereal_time.is_null() { state } else { with(&state, "/sidereal_time", sidereal_time.clone()) };
+            let request = with_all(&entry(), [("/initial_state", state), ("/stop", json!({"time": 30}))]);
+            epoch.map_or(request.clone(), |epoch| with(&request, "/epoch", epoch))
+        };
+        // 100 m/s along (2, -1, 2)/3.
+        let then = json!({"delta_v": {"along": {"frame": "inertial", "direction": [2, -1, 2]}, "value": 150}});
+        let pushed =
+            fly(&with(&eci([5000.0, 3000.0, 4000.0]), "/events", json!([event("time", "rises_through", 0.0, &then)])))
+                .await;
+        let started = fly(&eci([5100.0, 2950.0, 4100.0])).await;
+        for name in ["altitude", "longitude", "geocentric_latitude", "speed", "flight_path_angle", "heading"] {
+            let [pushed, started] = [&pushed, &started].map(|answer| number(&answer["final_state"][name]));
+            check::relative(name, pushed, started, 1e-10);
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_parachute_fills_brakes_and_is_released() {
+    let deploy = |parachute: Value| json!({"deploy": parachute});
+    let drogue = json!({"name": "drogue", "drag_area": 30, "inflation_time": 2, "delay": 0.5});
+    let main = json!({"name": "main", "drag_area": 900, "inflation_time": 4});
+    let list = [
+        event("mach", "falls_through", 0.9, &deploy(drogue)),
+        event("altitude", "falls_through", 3000.0, &with(&deploy(main.clone()), "/release", json!(["drogue"]))),
+        event("altitude", "falls_through", 2900.0, &json!({"release": ["drogue"]})),
+    ];
+    let answer = fly(&with(&eventful(&list), "/echo", true)).await;
+    assert_eq!(order(&answer), [0, 1, 2]);
+    assert_eq!(codes(&answer), ["not_deployed"]);
+    let detail = answer["warnings"][0]["detail"].as_str().unwrap();
+    assert!(detail.contains("event 2 releases") && detail.contains("event 0"), "{detail}");
+    assert_eq!(answer["case"]["events"][1]["then"]["deploy"], with(&main, "/delay", 0.0));
+    // Under both drag areas together, 900 m² and 1.3 × 12 m².
+    let sinks = f64::sqrt(2.0 * 5500.0 * 9.78 / (1.225 * (900.0 + 15.6)));
+    check::relative("sinks", number(&answer["final_state"]["speed"]), sinks, 0.01);
+    let at = |index: usize, side: &str| number(&answer["events"][index][side]["load_factor"]);
+    check::relative("a canopy that begins to fill does not pull", at(0, "after"), at(0, "state"), 1e-12);
+    assert!(at(1, "after") < 0.5 * at(1, "state"), "the drogue is gone: {}", at(1, "after"));
+}
+
 /// The angle of attack has no effect with coefficients that do not depend on it, unless an event brings such that do.
 #[tokio::test]
 async fn an_angle_of_attack_is_used_where_an_event_brings_coefficients_of_it() {

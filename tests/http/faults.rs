@@ -40,7 +40,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) => "must be a number",
                 Kind::Thrust => "must be \"off\" or an object",
                 Kind::Whole => "must be a whole number",
-                Kind::Name => "must be one of ",
+                Kind::Name | Kind::Along => "must be one of ",
                 Kind::Text => "must be a string",
                 Kind::Boolean => "must be true or false",
                 Kind::False => "must be false",
@@ -48,6 +48,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::Vector | Kind::Numbers => "must be an array of numbers",
                 Kind::Matrix => "must be an array of arrays of numbers",
                 Kind::Names => "must be an array of names",
+                Kind::Texts => "must be an array of strings",
                 Kind::Objects => "must be an array of objects",
                 Kind::Instant => "must be an RFC 3339 time",
                 Kind::SiderealTime => "must be a number of seconds or \"HH:MM:SS.s\"",
@@ -122,7 +123,7 @@ const WRONG_NAMES: [&str; 7] = ["", "ECI", "eci ", "constant_", "orbital-element
 #[tokio::test]
 async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
     let steady = Steady::new().await;
-    let named: Vec<_> = fields().into_iter().filter(|field| matches!(field.kind, Kind::Name)).collect();
+    let named: Vec<_> = fields().into_iter().filter(|field| matches!(field.kind, Kind::Name | Kind::Along)).collect();
     for field in &named {
         for name in WRONG_NAMES {
             let request = with(&field.request, &field.pointer, name);

@@ -39,6 +39,8 @@ pub(crate) enum Kind {
     Command(Range),
     /// An object with a thrust, or `"off"`.
     Thrust,
+    /// One of some names, or an object with an inertial direction.
+    Along,
     /// A whole number.
     Whole,
     /// One of some names.
@@ -55,6 +57,8 @@ pub(crate) enum Kind {
     Matrix,
     /// Some of several names.
     Names,
+    /// Texts.
+    Texts,
     Objects,
     /// An RFC 3339 time.
     Instant,
@@ -80,8 +84,8 @@ pub(crate) enum Limit {
 }
 
 use Kind::{
-    Angle, Boolean, Command, False, Instant, Matrix, Name, Names, Number, Numbers, Object, Objects, SiderealTime, Text,
-    Thrust, Vector, Whole,
+    Along, Angle, Boolean, Command, False, Instant, Matrix, Name, Names, Number, Numbers, Object, Objects,
+    SiderealTime, Text, Texts, Thrust, Vector, Whole,
 };
 use Limit::{Closed, Open, Unlimited};
 use Need::{Alternative, Optional, Required};
@@ -101,6 +105,7 @@ const TIME: Range = between(0.0, 1e9);
 const VELOCITY: Range = between(-1e6, 1e6);
 const FORCE: Range = between(-1e12, 1e12);
 const SPECIFIC_IMPULSE: Range = between(1e-3, 1e9);
+const DRAG_AREA: Range = between(0.0, 1e9);
 const EMISSIVITY: Range = Range { low: Open(0.0), high: Closed(1.0) };
 const WIND: Range = between(-1e4, 1e4);
 const COEFFICIENT: Range = between(-0.1, 0.1);
@@ -231,6 +236,9 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
         ),
         "events" => ("/events", &EVENT),
         "thrust off" => ("/events/0/then", &[("/thrust", Optional, Thrust)]),
+        "thrust without mass flow" => ("/events/0/then/thrust", &THRUST),
+        "parachute" => ("/events/0/then/deploy", &PARACHUTE),
+        "release" => ("/events/1/then", &[("/release", Optional, Texts)]),
         _ => panic!("no such model: {name}"),
     }
 }
@@ -249,13 +257,30 @@ const EVENT: [Row; 19] = [
     ("/0/then/aerodynamics/lift_coefficient", Optional, Number(FINITE)),
     ("/0/then/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
     ("/0/then/delta_v", Optional, Object),
-    ("/0/then/delta_v/along", Required, Name),
+    ("/0/then/delta_v/along", Required, Along),
     ("/0/then/delta_v/value", Required, Number(VELOCITY)),
     ("/0/then/thrust", Optional, Thrust),
-    ("/0/then/thrust/along", Required, Name),
+    ("/0/then/thrust/along", Required, Along),
     ("/0/then/thrust/value", Required, Number(FORCE)),
-    ("/0/then/thrust/specific_impulse", Required, Number(SPECIFIC_IMPULSE)),
+    // Propellant needs it.
+    ("/0/then/thrust/specific_impulse", Alternative, Number(SPECIFIC_IMPULSE)),
     ("/0/then/thrust/propellant", Optional, Number(POSITIVE)),
+];
+
+/// A thrust in inertial space that burns no mass.
+const THRUST: [Row; 4] = [
+    ("/along", Required, Along),
+    ("/along/frame", Required, Name),
+    ("/along/direction", Required, Vector),
+    ("/specific_impulse", Optional, Number(SPECIFIC_IMPULSE)),
+];
+
+const PARACHUTE: [Row; 5] = [
+    ("", Optional, Object),
+    ("/name", Required, Text),
+    ("/drag_area", Required, Number(DRAG_AREA)),
+    ("/inflation_time", Required, Number(TIME)),
+    ("/delay", Optional, Number(TIME)),
 ];
 
 /// What a condition may wait for, and the values that it may pass.
@@ -414,10 +439,10 @@ impl Kind {
         if !matches!(self, Boolean | False) {
             wrong.push(json!(false));
         }
-        if !matches!(self, Vector | Numbers | Matrix | Names | Objects) {
+        if !matches!(self, Vector | Numbers | Matrix | Names | Texts | Objects) {
             wrong.push(json!([1, 2, 3]));
         }
-        if !matches!(self, Object | Command(_) | Thrust) {
+        if !matches!(self, Object | Command(_) | Thrust | Along) {
             wrong.push(json!({"value": 1}));
         }
         wrong

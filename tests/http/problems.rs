@@ -13,7 +13,7 @@ use reentry_service::error::ApiError;
 use reentry_tests::service::{Service, pool};
 use serde_json::{Value, json};
 
-use super::refusal::{Steady, problem};
+use super::refusal::{Steady, good_answer, problem};
 use super::requests::{capsule, event, flight, with, with_all};
 
 fn post(path: &str, media_type: &str, body: impl Into<Body>) -> Request<Body> {
@@ -243,6 +243,38 @@ async fn thrust_that_burns_the_whole_vehicle_gets_its_problem() {
         let gone: f64 = detail.strip_prefix(begin).and_then(|rest| rest.strip_suffix(end)).unwrap().parse().unwrap();
         assert!(gone > 56.0 && gone <= 57.0, "{detail}");
     }
+}
+
+/// A braking burn that brings a lander to rest above the ground, where its thrust has no direction.
+fn braking() -> Value {
+    let thrust = json!({"thrust": {"along": "velocity", "value": -45_000, "specific_impulse": 311}});
+    json!({
+        "angle_unit": "deg",
+        "planet": {"model": "custom", "gravitational_parameter": 4.9028e12, "equatorial_radius": 1_737_400,
+            "polar_radius": 1_737_400, "rotation_rate": 0},
+        "atmosphere": {"type": "vacuum"},
+        "vehicle": {"mass": 15_000, "reference_area": 0, "aerodynamics": {"type": "constant", "drag_coefficient": 0}},
+        "initial_state": {"type": "planet_relative", "altitude": 1000, "longitude": 0, "geocentric_latitude": 0, "speed": 20,
+            "flight_path_angle": -90, "heading": 0},
+        "events": [event("time", "rises_through", 0.0, &json!({})), event("time", "rises_through", 0.0, &thrust)],
+        "stop": {"time": 3000},
+        "output": {"trajectory": false},
+    })
+}
+
+#[tokio::test]
+async fn thrust_that_brakes_the_vehicle_to_rest_gets_its_problem() {
+    let steady = Steady::new().await;
+    let problem = steady.refused(post_json("/simulate", &braking())).await;
+    assert_eq!(problem["type"], "/problems/no-direction");
+    assert_eq!(problem["errors"][0]["pointer"], "/events/1/then/thrust/along");
+    let detail = problem["detail"].as_str().unwrap();
+    let begin = "the flight cannot be finished: the thrust of event 1 has no direction from t = 14.298 s on, at an altitude of 856.29 m";
+    assert!(detail.starts_with(begin), "{detail}");
+    // A condition on the speed 0 is met there, and the flight ends by it.
+    let stops = with(&braking(), "/stop", json!({"when": [{"quantity": "speed", "falls_through": 0}]}));
+    let answer = good_answer(&steady.service, "/simulate", &stops).await;
+    assert_eq!((&answer["termination"], &answer["final_state"]["speed"]), (&json!("condition"), &json!(0.0)));
 }
 
 #[tokio::test]

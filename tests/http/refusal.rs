@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::requests::{conversion, flight};
 
 /// The whole list of problems: type, title, status.
-const PROBLEMS: [(&str, &str, u16); 21] = [
+const PROBLEMS: [(&str, &str, u16); 22] = [
     ("/problems/invalid-json", "Not JSON", 400),
     ("/problems/invalid-query", "Invalid query string", 400),
     ("/problems/unreadable-body", "Unreadable body", 400),
@@ -27,6 +27,7 @@ const PROBLEMS: [(&str, &str, u16); 21] = [
     ("/problems/singularity", "Singular equations", 422),
     ("/problems/step-size", "Too stiff to integrate", 422),
     ("/problems/chattering-schedule", "Schedule undoes itself", 422),
+    ("/problems/no-direction", "Thrust without a direction", 422),
     ("/problems/no-mass-left", "No mass left", 422),
     ("/problems/overflow", "Loads out of range", 422),
     ("/problems/too-many-requests", "Too many requests", 429),

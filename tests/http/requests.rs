@@ -171,7 +171,34 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             "thrust off",
             with(&flight(), "/events", json!([event("time", "rises_through", 0.5, &json!({"thrust": "off"}))])),
         ),
+        (
+            "thrust without mass flow",
+            with(
+                &flight(),
+                "/events",
+                json!([event("time", "rises_through", 0.5, &json!({"thrust": inertial_thrust()}))]),
+            ),
+        ),
+        ("parachute", with(&flight(), "/events", json!([deploys()]))),
+        (
+            "release",
+            with(
+                &flight(),
+                "/events",
+                json!([deploys(), event("time", "rises_through", 0.7, &json!({"release": ["drogue"]}))]),
+            ),
+        ),
     ]
+}
+
+fn inertial_thrust() -> Value {
+    json!({"along": {"frame": "inertial", "direction": [1, -2, 0.5]}, "value": 3000, "specific_impulse": 280})
+}
+
+/// An event that deploys a parachute.
+fn deploys() -> Value {
+    let parachute = json!({"name": "drogue", "drag_area": 20, "inflation_time": 0.2, "delay": 0.1});
+    event("time", "rises_through", 0.4, &json!({"deploy": parachute}))
 }
 
 /// The flight with one of the other models.

@@ -107,7 +107,8 @@ impl<P: Scalar> Canopies<P> {
     /// Those of a vehicle with one over its mass, 1/kg, each with the time at which it was deployed, s.
     pub(crate) fn of(canopies: impl Iterator<Item = (Canopy, P)>, over_mass: P) -> Option<Self> {
         let mut of_all = Self { full: P::zero(), filling: Vec::new() };
-        for (Canopy { parachute, inflation, .. }, deployed) in canopies {
+        // What has no drag at all may have no mass to speak of.
+        for (Canopy { parachute, inflation, .. }, deployed) in canopies.filter(|(it, _)| it.parachute.drag_area > 0.0) {
             let full = over_mass * parachute.drag_area;
             match inflation {
                 Inflation::Ahead => {}

@@ -378,7 +378,15 @@ impl<'a> Stage<'a> {
     fn first(flight: &'a Trajectory, parameters: &Parameters<Dual>) -> Self {
         let vehicle = &flight.case.vehicle;
         let mass = if vehicle.is_ballistic() { Dual::from(vehicle.mass) } else { parameters.mass };
-        Self { flight, phase: 0, parameters: *parameters, since: Dual::from(0.0), mass, propellant: None, deployed: Vec::new() }
+        Self {
+            flight,
+            phase: 0,
+            parameters: *parameters,
+            since: Dual::from(0.0),
+            mass,
+            propellant: None,
+            deployed: Vec::new(),
+        }
     }
 
     fn as_flown(&self) -> &'a Phase {

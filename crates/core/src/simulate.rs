@@ -70,8 +70,8 @@ pub enum SimulationError {
     },
     /// A braking thrust has brought the vehicle to rest, where it has no direction.
     #[error(
-        "the thrust of event {event} has no direction from t = {} s on, at an altitude of {} m: it acts along the velocity, and the vehicle is at rest",
-        Plain(*.time), Plain(*.altitude)
+        "the thrust of event {event} has no direction from t = {time:.3} s on, at an altitude of {altitude:.2} m: it acts along the velocity, \
+         and the vehicle is at rest"
     )]
     NoDirection {
         /// The number of the event that switched the thrust on.

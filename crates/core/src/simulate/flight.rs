@@ -235,7 +235,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// The thrust that is on has no direction.
     fn no_direction(&self, time: f64) -> SimulationError {
-        let switches_on = |event: &usize| matches!(self.scenario.case().events[*event].then.engine, Some(Engine::On(_)));
+        let switches_on =
+            |event: &usize| matches!(self.scenario.case().events[*event].then.engine, Some(Engine::On(_)));
         let event = self.log.happenings.iter().rev().map(|happening| happening.event).find(switches_on).unwrap_or(0);
         let altitude = self.scenario.case().planet.shape.altitude(&F::planet_fixed(&self.state).position);
         SimulationError::NoDirection { event, time, altitude }

@@ -294,7 +294,8 @@ impl Event {
 
     /// Whether it may change the mass.
     pub fn changes_mass(&self) -> bool {
-        let burns = |thrust: &ThrustCommand| matches!(thrust, ThrustCommand::On(thrust) if thrust.specific_impulse.is_some());
+        let burns =
+            |thrust: &ThrustCommand| matches!(thrust, ThrustCommand::On(thrust) if thrust.specific_impulse.is_some());
         self.then.mass.is_some() || self.then.thrust.as_ref().is_some_and(burns)
     }
 
@@ -327,14 +328,18 @@ impl Event {
             match deployed.entry(name) {
                 Entry::Vacant(entry) => _ = entry.insert(index),
                 Entry::Occupied(first) => {
-                    let detail =
-                        format!("must be a name of its own: a parachute is deployed once, this one by event {}", first.get());
+                    let detail = format!(
+                        "must be a name of its own: a parachute is deployed once, this one by event {}",
+                        first.get()
+                    );
                     faults.push(Fault::new(format!("/events/{index}/then/deploy/name"), detail));
                 }
             }
         }
         for (index, Self { then, .. }) in events.iter().enumerate() {
-            for (place, name) in then.release.iter().enumerate().filter(|(_, name)| !deployed.contains_key(name.as_str())) {
+            for (place, name) in
+                then.release.iter().enumerate().filter(|(_, name)| !deployed.contains_key(name.as_str()))
+            {
                 let got = shortened(name);
                 let detail = format!("must be the name of a parachute that an event deploys, got {got:?}");
                 faults.push(Fault::new(format!("/events/{index}/then/release/{place}"), detail));
@@ -484,7 +489,8 @@ impl Thrust {
         let specific_impulse = object.optional_number("specific_impulse", Bound::SPECIFIC_IMPULSE);
         let propellant = object.optional_number("propellant", Bound::POSITIVE);
         if propellant.is_some() && !burns {
-            object.fault_of("propellant", "must be left out: without specific_impulse the thrust burns none".to_owned());
+            object
+                .fault_of("propellant", "must be left out: without specific_impulse the thrust burns none".to_owned());
         }
         Some(Self { along: along?, value: value?, specific_impulse, propellant })
     }
@@ -568,7 +574,6 @@ impl InertialDirection {
 }
 
 impl Axis {
-
     fn to_core(self) -> CoreAxis {
         match self {
             Self::Velocity => CoreAxis::Velocity,
