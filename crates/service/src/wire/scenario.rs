@@ -278,8 +278,7 @@ impl SimulateRequest {
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
         let mut across = Event::area_faults(&self.events, &self.vehicle);
         across.extend(Event::parachute_faults(&self.events));
-        let is_angle_known =
-            self.epoch.is_none() || self.planet.is_earth() || self.initial_state.gives_sidereal();
+        let is_angle_known = self.epoch.is_none() || self.planet.is_earth() || self.initial_state.gives_sidereal();
         across.extend(Event::frame_faults(&self.events, is_angle_known));
         across.extend(self.name_faults());
         let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
