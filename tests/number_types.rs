@@ -314,11 +314,11 @@ fn sensitivities_hold_across_events() {
         (
             "parachutes that follow each other, and a mass that changes as one fills, and burns",
             vec![
-                Event { when: altitude(70e3), then: deploys(0.2, 12.0, 0.0) },
-                Event { when: altitude(62e3), then: burns(Axis::Velocity, Some(40.0)) },
-                Event { when: altitude(58e3), then: lighter.clone() },
-                Event { when: altitude(30e3), then: Effect { release: vec![0], ..deploys(0.5, 5.0, 1.0) } },
-                Event { when: altitude(9e3), then: releases(3) },
+                Event { when: altitude(70e3).into(), then: deploys(0.2, 12.0, 0.0) },
+                Event { when: altitude(62e3).into(), then: burns(Axis::Velocity, Some(40.0)) },
+                Event { when: altitude(58e3).into(), then: lighter.clone() },
+                Event { when: altitude(30e3).into(), then: Effect { release: vec![0], ..deploys(0.5, 5.0, 1.0) } },
+                Event { when: altitude(9e3).into(), then: releases(3) },
             ],
         ),
         (

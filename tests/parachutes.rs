@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 use reentry::coordinates::Inertial;
-use reentry::event::{Condition, Direction, Effect, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Axis, STANDARD_GRAVITY, Thrust};
 use reentry::scenario::{Bound, Fault, ScenarioError};
@@ -47,8 +47,8 @@ fn release(parachutes: &[usize]) -> Effect {
     Effect { release: parachutes.to_vec(), ..Effect::default() }
 }
 
-fn falls(quantity: Quantity, value: f64) -> Condition {
-    Condition { quantity, value, direction: Direction::Falling }
+fn falls(quantity: Quantity, value: f64) -> Trigger {
+    Condition { quantity, value, direction: Direction::Falling }.into()
 }
 
 /// The end of a fall in the thesis's air, and the greatest load factor on the way from a time, with the time of that.

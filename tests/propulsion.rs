@@ -466,7 +466,7 @@ fn a_braking_burn_in_air_over_a_turning_planet_ends_at_rest() {
 fn a_burn_may_end_where_the_vehicle_is_at_rest() {
     let plain = lander(20.0, -std::f64::consts::FRAC_PI_2);
     let (time, climb) = braked_to_rest(&plain, BRAKE);
-    let when = Condition { quantity: Quantity::Speed, value: 0.0, direction: Direction::Falling };
+    let when = Condition { quantity: Quantity::Speed, value: 0.0, direction: Direction::Falling }.into();
     let burning = vec![at(0.0, switch_on(BRAKE))];
     let stopped =
         fly(&Case { events: burning.clone(), stop: Stop { when: vec![when], ..Stop::default() }, ..plain.clone() });
