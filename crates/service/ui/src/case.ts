@@ -61,6 +61,9 @@ const ANGLES = new Set([
   'angle_of_attack',
 ]);
 
+/** The quantities of conditions that are angles. */
+export const ANGLE_QUANTITIES: ReadonlySet<unknown> = new Set(['flight_path_angle', 'inclination']);
+
 /** An angle in another unit; what is no number stays as it is. */
 export function turned(value: unknown, from: AngleUnit, to: AngleUnit): unknown {
   if (from === to || typeof value !== 'number') return value;
@@ -94,7 +97,7 @@ export function inUnit(tree: Case, unit: AngleUnit): Case {
   const walk = (value: unknown): unknown => {
     if (Array.isArray(value)) return value.map(walk);
     if (typeof value !== 'object' || value === null) return value;
-    const ofAngle = 'quantity' in value && (value.quantity === 'flight_path_angle' || value.quantity === 'inclination');
+    const ofAngle = 'quantity' in value && ANGLE_QUANTITIES.has(value.quantity);
     return Object.fromEntries(
       Object.entries(value).map(([name, inner]) => {
         if (ofAngle && (name === 'falls_through' || name === 'rises_through')) return [name, scale(inner)];

@@ -3,8 +3,8 @@ import { computed } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useState } from 'preact/hooks';
 import type { Case, State } from '../api';
-import { get, inUnit, legible, type Path, pointer, set, turned } from '../case';
-import { type AngleUnit, type Name, QUANTITIES } from '../quantities';
+import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
+import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
 import { type Field, type Fields, type Kind, SCHEDULE, SECTIONS, THRUST } from './fields';
 import { exchanged, forget } from './held';
@@ -157,8 +157,7 @@ function isAngle(field: Field, path?: Path): boolean {
   if ('isAngle' in field && field.isAngle) return true;
   const name = path?.at(-1);
   if (!path || (name !== 'falls_through' && name !== 'rises_through')) return false;
-  const quantity = get(draft.value, [...path.slice(0, -1), 'quantity']) as Name | undefined;
-  return quantity !== undefined && QUANTITIES[quantity]?.angle === true;
+  return ANGLE_QUANTITIES.has(get(draft.value, [...path.slice(0, -1), 'quantity']));
 }
 
 /** Angles are read and typed in the reader's unit; the case keeps its own, and with it every number as it was typed. */
