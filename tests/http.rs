@@ -16,6 +16,7 @@ mod ranges;
 
 mod analytic;
 mod batch;
+mod columns;
 mod convert;
 mod events;
 mod frames;

@@ -93,7 +93,7 @@ async fn where_nothing_can_happen_nothing_is_said_of_it() {
         assert_eq!((answer.get("events"), answer.get("condition")), (None, None));
         assert_eq!(answer["case"].get("events"), case.get("events"));
         assert_eq!(names(&answer["case"]["stop"]), ["altitude", "time"]);
-        assert_eq!(names(&answer["initial_state"]).last(), Some(&"specific_energy"));
+        assert_eq!(names(&answer["initial_state"]).last(), Some(&"ground_distance"));
     }
     let answer = fly(&eventful(&[mark("speed", "rises_through", 1e5)])).await;
     assert_eq!(answer["events"], json!([]), "it can happen, and does not");
@@ -149,7 +149,7 @@ async fn a_row_at_an_event_shows_what_is_after_it_and_the_first_row_what_was_giv
     let csv = String::from_utf8(csv.body.to_vec()).unwrap();
     let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
-    assert_eq!((header.len(), header.last()), (COLUMNS.len() + 5, Some(&"mass")));
+    assert_eq!((header.len(), header.last()), (COLUMNS.len() + 5, Some(&"ground_distance")));
     for (row, line) in lines.enumerate() {
         for (name, cell) in header.iter().zip(line) {
             assert_eq!(cell, answer["trajectory"][*name][row].to_string(), "{name} of row {row}");

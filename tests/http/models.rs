@@ -85,7 +85,7 @@ async fn columns_are_there_where_the_models_make_them_possible() {
     }
     let all = fly(&model("us76")).await;
     let last = names(&all["trajectory"]);
-    assert_eq!((last.len(), last.last()), (28, Some(&"utc")));
+    assert_eq!((last.len(), last.last()), (30, Some(&"ground_distance")));
     assert_eq!(last[14..20], ["azimuth", "air_speed", "temperature", "pressure", "speed_of_sound", "mach"]);
 }
 
@@ -204,14 +204,19 @@ async fn faults_of_columns_are_named() {
     let known = COLUMNS[..14].join(", ");
     for (output, pointer, phrase) in [
         (json!({"columns": ["time", "hight"]}), "/output/columns/1", known.as_str()),
-        (json!({"columns": ["time", "hight"]}), "/output/columns/1", "wall_temperature, mass, got \"hight\""),
+        (json!({"columns": ["time", "hight"]}), "/output/columns/1", "periapsis_altitude, thrust, got \"hight\""),
         (json!({"columns": ["time", 3]}), "/output/columns/1", "got a number"),
         (json!({"columns": ["time", "speed", "time"]}), "/output/columns/2", "time is there twice"),
         (json!({"columns": []}), "/output/columns", "must have at least 1 entry, got 0"),
-        (json!({"columns": vec!["time"; 34]}), "/output/columns", "must have at most 33 entries, got 34"),
+        (json!({"columns": vec!["time"; 45]}), "/output/columns", "must have at most 44 entries, got 45"),
         (json!({"columns": "time"}), "/output/columns", "must be an array of names, got a string"),
         (json!({"columns": ["time"], "trajectory": false}), "/output/columns", "no trajectory"),
         (json!({"columns": ["time"], "count": 2, "interval": 1}), "/output", "must have exactly one of"),
+        (
+            json!({"columns": ["time", "thrust"]}),
+            "/output/columns/1",
+            "thrust needs an event that switches a thrust on",
+        ),
         (json!({"columns": ["mach"]}), "/output/columns/0", "mach needs an atmosphere that has a temperature"),
         (json!({"columns": ["time", "pressure"]}), "/output/columns/1", "an atmosphere that has a pressure"),
         (json!({"columns": ["time", "utc"]}), "/output/columns/1", "utc needs an epoch"),

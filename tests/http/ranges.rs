@@ -83,6 +83,10 @@ fn unsound(answer: &Answer) -> Option<String> {
                     }
                 }
             }
+            // The first phase begins with the flight, and not with an event.
+            if let Some(value) = answer.pointer_mut("/phases/0/from") {
+                *value = json!(0);
+            }
             answer.to_string().contains("null").then(|| text.to_string())
         }
         StatusCode::UNPROCESSABLE_ENTITY if text.contains("NaN") || text.contains("inf") => Some(text.to_string()),

@@ -10,7 +10,7 @@ use super::refusal::good_answer;
 use super::requests::{KINDS, capsule, flight, models, with, with_all, without};
 
 /// The quantities of a row of every case, in the order of the contract.
-pub(crate) const COLUMNS: [&str; 23] = [
+pub(crate) const COLUMNS: [&str; 25] = [
     "time",
     "altitude",
     "radius",
@@ -34,6 +34,8 @@ pub(crate) const COLUMNS: [&str; 23] = [
     "inertial_speed",
     "inertial_flight_path_angle",
     "specific_energy",
+    "ground_range",
+    "ground_distance",
 ];
 
 /// Those that are in the request's unit of angles.
@@ -90,7 +92,7 @@ async fn the_answer_has_the_fields_of_the_contract_in_order() {
         assert_eq!(names(&answer[place]), COLUMNS, "{place}");
     }
     assert_eq!(names(&answer["models"]), ["planet", "shape", "atmosphere", "gravity", "aerodynamics", "wind"]);
-    assert_eq!(names(&answer["peaks"]), ["deceleration", "load_factor", "dynamic_pressure", "altitude"]);
+    assert_eq!(names(&answer["peaks"]), ["deceleration", "load_factor", "dynamic_pressure", "altitude", "speed"]);
     for peak in answer["peaks"].as_object().unwrap().values() {
         assert_eq!(names(peak), ["value", "time", "altitude"]);
     }
@@ -248,7 +250,9 @@ async fn degrees_give_the_same_flight_as_radians() {
             // A rounding of the angles that were sent moves the flight by parts of 1e-16.
             match name {
                 _ if ANGLES.contains(&name) => check::angle(&what, deg.to_radians(), rad, 1e-13),
-                "altitude" | "geodetic_altitude" | "downrange" | "crossrange" => check::near(&what, deg, rad, 1e-6),
+                "altitude" | "geodetic_altitude" | "downrange" | "crossrange" | "ground_range" | "ground_distance" => {
+                    check::near(&what, deg, rad, 1e-6);
+                }
                 "time" => check::near(&what, deg, rad, 1e-12),
                 _ => check::relative(&what, deg, rad, 1e-10),
             }

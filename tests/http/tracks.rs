@@ -146,7 +146,7 @@ async fn the_end_and_the_peaks_are_marked() {
         }
     }
     let units: Vec<_> = marks.iter().map(|mark| mark["properties"]["unit"].as_str().unwrap()).collect();
-    assert_eq!(units, ["m/s", "m/s²", "g", "Pa", "m", ""]);
+    assert_eq!(units, ["m/s", "m/s²", "g", "Pa", "m", "m/s", ""]);
 
     let xml = drawn(&case, "kml").await;
     let packets = czml(&case).await;
@@ -164,7 +164,7 @@ async fn the_end_and_the_peaks_are_marked() {
     let description = |index: usize| packets[index]["description"].as_str().unwrap();
     assert_eq!(description(4), "load factor 8.9873 g, 234.0 s after the start, at an altitude of 38465 m");
     // A Mach number has no unit.
-    assert!(description(7).starts_with("mach ") && !description(7).contains(" ,"), "{}", description(7));
+    assert!(description(8).starts_with("mach ") && !description(8).contains(" ,"), "{}", description(8));
 }
 
 #[tokio::test]
@@ -398,9 +398,9 @@ async fn a_flight_that_ends_at_its_start_is_a_point() {
         let map = geojson(&case).await;
         assert_eq!(map["features"][0]["geometry"], json!({"type": "MultiLineString", "coordinates": []}));
         assert_eq!(map["features"][0]["properties"]["times"], json!([]));
-        assert_eq!(map["features"].as_array().unwrap().len(), 6);
+        assert_eq!(map["features"].as_array().unwrap().len(), 7);
         assert_eq!(numbers(&czml(&case).await[1]["position"]["cartographicDegrees"]).len(), 4);
-        assert_eq!(elements(&drawn(&case, "kml").await, "Placemark").len(), 6);
+        assert_eq!(elements(&drawn(&case, "kml").await, "Placemark").len(), 7);
     }
 }
 

@@ -26,7 +26,7 @@ pub use earth::{
 };
 pub use flight_path::FlightPath;
 pub use geodetic::{Geodetic, latitude_and_altitude};
-pub use great_circle::GreatCircle;
+pub use great_circle::{GreatCircle, ground_rate};
 pub use inertial::{Inertial, about_pole};
 pub use inertial_flight_path::InertialFlightPath;
 pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements, true_anomaly};

@@ -224,4 +224,11 @@ impl Effect {
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
+
+    /// Whether it changes the vehicle or its thrust; an impulse changes the velocity alone.
+    pub fn changes_vehicle(&self) -> bool {
+        let Self { mass, reference_area, aerodynamics, impulse: _, engine, release, deploy } = self;
+        let is_changed = mass.is_some() || reference_area.is_some() || aerodynamics.is_some();
+        is_changed || engine.is_some() || !release.is_empty() || deploy.is_some()
+    }
 }

@@ -165,11 +165,14 @@ fn record<F: Formulation<N>, const N: usize>(
     })?;
     let end = flight.instant();
     extremes.end(flight.motion.forces(), &end)?;
-    let Extremes { peaks, mut warnings, .. } = extremes;
+    let Extremes { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = extremes;
     let Log { mut phases, happenings, warnings: others } = flight.log;
     phases.insert(0, Phase::first(case));
     warnings.extend(others);
-    Ok(Trajectory::new(case.clone(), Flown { start, legs, phases, happenings, end, arrival, peaks, warnings }))
+    Ok(Trajectory::new(
+        case.clone(),
+        Flown { start, legs, phases, happenings, end, arrival, peaks, peaks_of_phases, warnings },
+    ))
 }
 
 /// Flies to the end and shows every step on the way.

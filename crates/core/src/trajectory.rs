@@ -1,19 +1,31 @@
 //! The answer: how the flight ended, its extremes, and its state at any time.
 
+mod ground_track;
 mod leg;
+mod phases;
 mod sampling;
 
+pub use phases::{FlightPhase, PhaseStart};
 pub use sampling::{Sampling, TooManyInstants};
 
 pub(crate) use leg::{Leg, LegStep, Motion};
 
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ground_track::GroundTrack;
 use leg::LegInterpolant;
 
 use crate::atmosphere::AtmosphereSample;
-use crate::coordinates::{FlightPath, GreatCircle, Inertial, PlanetFixed, latitude_and_altitude};
+use crate::coordinates::{
+    FlightPath, GreatCircle, Inertial, OrbitalElements, PlanetFixed, UndefinedElements, about_pole,
+    latitude_and_altitude,
+};
 use crate::heating;
 use crate::integrate::Statistics;
 use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical, WIND_FADE_ANGLE};
+use crate::planet::Planet;
 use crate::scenario::{Case, Equations, Phase};
 use crate::wind::Wind;
 
@@ -71,6 +83,8 @@ pub struct Peaks {
     pub dynamic_pressure: Peak,
     /// m.
     pub altitude: Peak,
+    /// Relative to the rotating planet, m/s.
+    pub speed: Peak,
     /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
     pub mach: Option<Peak>,
     /// Of the heating, where it is asked for.
@@ -209,13 +223,21 @@ pub struct FlightPoint {
     pub inertial_flight_path_angle: f64,
     /// Half the squared inertial speed and the potential of the planet's gravity, J/kg.
     pub specific_energy: f64,
-    /// From the initial ground point along its heading, m, on the great circle of the sphere of radius r₀, in half a turn either way;
-    /// none where the flight starts vertically or at rest.
+    /// From the initial ground point along its heading, m, on the great circle of the sphere of radius r₀, counted on continuously over
+    /// whole turns; none where the flight starts vertically or at rest. At the poles of the great circle, where the crossrange is a
+    /// quarter of a turn, it is undefined: a flight that passes near one gains or loses up to half a turn within a short time, by the side on
+    /// which it passes, and gains it if it passes through.
     pub downrange: Option<f64>,
     /// To the right of that great circle, m.
     pub crossrange: Option<f64>,
+    /// From the initial ground point, m, along the great circle between the two on the sphere of radius r₀; at most π r₀.
+    pub ground_range: f64,
+    /// The length of the ground track since the start, m, on the sphere of radius r₀.
+    pub ground_distance: f64,
     /// kg.
     pub mass: f64,
+    /// The magnitude of the thrust, N; 0 where none is on.
+    pub thrust: f64,
     /// Into the stagnation point since the start, J/m², where heating is asked for.
     pub heat_load: Option<f64>,
     /// At which the wall radiates what it gets, K.
@@ -236,16 +258,39 @@ pub struct EventPoint {
 impl FlightPoint {
     /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
-        let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor, heat_flux } =
-            self.loads;
+        let Loads {
+            altitude,
+            density,
+            speed: _,
+            air_speed,
+            mach,
+            dynamic_pressure,
+            deceleration,
+            load_factor,
+            heat_flux,
+        } = self.loads;
         let path: [f64; 6] = self.flight_path.into();
         let loads = [altitude, density, air_speed, dynamic_pressure, deceleration, load_factor];
         let angles = [self.bank_angle, self.angle_of_attack, self.inertial_flight_path_angle];
-        let rest = [self.geodetic_altitude, self.inertial_speed, self.specific_energy];
+        let rest = [self.geodetic_altitude, self.inertial_speed, self.specific_energy, self.ground_distance];
         let heat = [heat_flux.map(|flux| flux.total()), self.heat_load, self.wall_temperature];
         let known = [mach, self.temperature, self.pressure, self.speed_of_sound].into_iter().chain(heat).flatten();
         let always = path.into_iter().chain(loads).chain(angles).chain(rest);
         always.chain(known).all(f64::is_finite)
+    }
+
+    /// The elements of the orbit that the vehicle would follow from here under the planet's
+    /// [`orbital_gravitational_parameter`](Planet::orbital_gravitational_parameter) alone, and which of them are conventions; none for motion
+    /// towards or away from the centre. The inertial frame is that from which the planet is turned by `sidereal_angle`, rad, at the start.
+    pub fn orbital_elements(
+        &self,
+        planet: &Planet,
+        sidereal_angle: f64,
+    ) -> Option<(OrbitalElements, UndefinedElements)> {
+        let state = self.flight_path.to_planet_fixed();
+        let rotation = about_pole(sidereal_angle + planet.rotation_rate * self.time);
+        let inertial = Inertial::from_planet_fixed_by(&state, planet, &rotation);
+        OrbitalElements::from_inertial(&inertial, planet.orbital_gravitational_parameter).ok()
     }
 }
 
@@ -274,6 +319,8 @@ pub struct Trajectory {
     pub(crate) case: Case,
     pub(crate) flown: Flown,
     great_circle: GreatCircle,
+    /// Made when it is first needed.
+    ground_track: OnceLock<GroundTrack>,
 }
 
 /// What a flight leaves behind.
@@ -288,13 +335,15 @@ pub(crate) struct Flown {
     pub(crate) end: Instant,
     pub(crate) arrival: Arrival,
     pub(crate) peaks: Peaks,
+    /// Of the phases that last, and of that at the end, with their numbers.
+    pub(crate) peaks_of_phases: Vec<(usize, Peaks)>,
     pub(crate) warnings: Vec<Warning>,
 }
 
 impl Trajectory {
     pub(crate) fn new(case: Case, flown: Flown) -> Self {
         let great_circle = GreatCircle::of(&case.initial_state);
-        let mut flight = Self { case, flown, great_circle };
+        let mut flight = Self { case, flown, great_circle, ground_track: OnceLock::new() };
         let ranges = flight.outside_ranges();
         flight.flown.warnings.extend(ranges);
         let faded = flight.wind_fades().map(|time| Warning::WindFadedNearPole { time });
@@ -308,7 +357,8 @@ impl Trajectory {
         let (Some(heating), Some(peaks)) = (self.case.heating, self.peaks().heating) else { return Vec::new() };
         let nose_radius = self.case.vehicle.nose_radius.unwrap_or_default();
         let of_peak = |peak: Peak, range: heating::Range| {
-            let Loads { density, air_speed, .. } = self.at(peak.time).loads;
+            let Instant { time, state, phase, regime, .. } = self.instant_at(peak.time);
+            let Loads { density, air_speed, .. } = self.forces(phase, regime).loads(time, &state);
             let quantities = [
                 ("speed relative to the air", "m/s", air_speed, range.speed),
                 ("density", "kg/m³", density, range.density),
@@ -392,15 +442,19 @@ impl Trajectory {
 
     /// The state at a time, s; before the start it is the initial one, after the end the final one; at an event that after its effect.
     pub fn at(&self, time: f64) -> FlightPoint {
+        self.point_of(&self.instant_at(time))
+    }
+
+    fn instant_at(&self, time: f64) -> Instant {
         let following = self.flown.legs.partition_point(|leg| leg.end_time() <= time);
         match self.flown.legs.get(following) {
-            _ if time <= 0.0 => self.initial(),
+            _ if time <= 0.0 => self.flown.start,
             Some(leg) => {
                 let motion = self.motion(leg);
                 let (state, heat_load) = motion.interpolant(&leg.step).at(&motion, time);
-                self.point(motion.forces(), leg.phase, time, &state, heat_load)
+                Instant { time, state, heat_load, phase: leg.phase, regime: leg.regime }
             }
-            None => self.last(),
+            None => self.flown.end,
         }
     }
 
@@ -461,6 +515,35 @@ impl Trajectory {
         motion
     }
 
+    /// Measures the ground track, on which points rest; otherwise that is done when the first of them is asked for. Returns whether it was
+    /// finished before `interrupt` became true.
+    pub fn measure_ground_track(&self, interrupt: &AtomicBool) -> bool {
+        if self.ground_track.get().is_some() {
+            return true;
+        }
+        let track = self.ground_track_until(|| interrupt.load(Ordering::Relaxed));
+        track.is_some_and(|track| {
+            self.ground_track.get_or_init(|| track);
+            true
+        })
+    }
+
+    /// The ground track, unless it is interrupted.
+    fn ground_track_until(&self, is_interrupted: impl Fn() -> bool) -> Option<GroundTrack> {
+        let mut track = GroundTrack::default();
+        let mut known: Option<(Motion, &Leg)> = None;
+        let mut state = self.flown.start.state;
+        for leg in &self.flown.legs {
+            if is_interrupted() {
+                return None;
+            }
+            let motion = known.map_or_else(|| self.motion(leg), |(motion, from)| self.going_on(motion, from, leg));
+            state = track.extend(&motion, leg, &state, &self.great_circle);
+            known = Some((motion, leg));
+        }
+        Some(track)
+    }
+
     fn forces(&self, phase: usize, regime: Regime) -> Forces {
         let mut forces = self.flown.phases[phase].forces(&self.case);
         forces.enter(regime);
@@ -488,8 +571,14 @@ impl Trajectory {
         let inertial = Inertial::from_planet_fixed(state, planet, 0.0);
         let climb = inertial.position.dot(&inertial.velocity);
         let across = inertial.position.cross(&inertial.velocity).norm();
-        let range = self.great_circle.along_and_across(&state.position);
-        let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * planet.equatorial_radius()));
+        let track = self.ground_track.get_or_init(|| self.ground_track_until(|| false).unwrap_or_default());
+        let [length, near] = track.length_and_along(time);
+        let range = self.great_circle.along_and_across(&state.position).map(|[along, across]| {
+            // A piece of the track is shorter than half a turn about the pole.
+            [along + TAU * ((near - along) / TAU).round(), across]
+        });
+        let sphere = planet.equatorial_radius();
+        let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * sphere));
         let loads = forces.loads(time, state);
         let wall = forces.heating().zip(loads.heat_flux);
         FlightPoint {
@@ -508,7 +597,10 @@ impl Trajectory {
             specific_energy: 0.5 * inertial.velocity.norm_squared() + planet.potential(&state.position),
             downrange,
             crossrange,
+            ground_range: self.great_circle.angle_to(&state.position) * sphere,
+            ground_distance: length * sphere,
             mass: self.flown.phases[phase].mass(time),
+            thrust: self.flown.phases[phase].thrust.map_or(0.0, |thrust| thrust.force.abs()),
             heat_load,
             wall_temperature: wall.map(|(nose, flux)| nose.wall_temperature(flux.total())),
         }

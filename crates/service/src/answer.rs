@@ -40,6 +40,9 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let start = Instant::now();
     let flight = fly(&job.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();
+    if !flight.measure_ground_track(interrupt) {
+        return Err(ApiError::Interrupted);
+    }
     let points = rows(&job, &flight, row_limit, interrupt)?;
     let work = work(&flight, points.as_deref());
     let extras = extras(&job, &flight, interrupt)?;

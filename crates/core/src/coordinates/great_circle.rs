@@ -1,4 +1,5 @@
-//! Downrange and crossrange: a place relative to the great circle on which a flight sets out.
+//! Distances over the ground: downrange and crossrange, relative to the great circle on which a flight sets out, the angle to its start,
+//! and how fast the ground point moves.
 
 use nalgebra::Vector3;
 
@@ -54,4 +55,27 @@ impl<S: Scalar<Mask = bool>> GreatCircle<S> {
     pub fn angle_to(&self, position: &Vector3<S>) -> S {
         length(&self.start.cross(position)).atan2(self.start.dot(position))
     }
+}
+
+impl GreatCircle<f64> {
+    /// How far along the circle the foot of a place is, in (-π, π], rad; none without a heading.
+    pub fn along(&self, position: &Vector3<f64>) -> Option<f64> {
+        Some(self.ahead?.dot(position).atan2(self.start.dot(position)))
+    }
+
+    /// The sine of the angle between a place and the nearer pole of the circle, where the angle along the circle is undefined; none
+    /// without a heading.
+    pub fn sine_to_pole(&self, position: &Vector3<f64>) -> Option<f64> {
+        let [start, ahead] = [self.start, self.ahead?].map(|axis| axis.dot(position));
+        Some(((start * start + ahead * ahead) / position.norm_squared()).sqrt())
+    }
+}
+
+/// The rate at which the ground point of a state moves, seen from the planet's centre, rad/s.
+///
+/// ```text
+/// |d(r/|r|)/dt| = |r × v| / r²
+/// ```
+pub fn ground_rate(state: &PlanetFixed<f64>) -> f64 {
+    state.position.cross(&state.velocity).norm() / state.position.norm_squared()
 }

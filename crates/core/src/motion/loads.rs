@@ -19,6 +19,8 @@ pub struct Loads<S> {
     pub altitude: S,
     /// kg/m³.
     pub density: S,
+    /// Relative to the rotating planet, m/s.
+    pub speed: S,
     /// Relative to the air, m/s.
     pub air_speed: S,
     /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
@@ -39,6 +41,7 @@ impl<S: Scalar> Loads<S> {
         let heat_flux = || self.heat_flux.map(|flux| flux.total());
         match quantity {
             Quantity::Altitude => Some(self.altitude),
+            Quantity::Speed => Some(self.speed),
             Quantity::Mach => self.mach,
             Quantity::DynamicPressure => Some(self.dynamic_pressure),
             Quantity::LoadFactor => Some(self.load_factor),
@@ -86,6 +89,7 @@ impl<P: Scalar> Forces<P> {
         Loads {
             altitude: flow.altitude,
             density,
+            speed: flow.ground_speed,
             air_speed: *speed,
             mach,
             dynamic_pressure,

@@ -7,7 +7,7 @@ use super::passage::Passage;
 use crate::coordinates::PlanetFixed;
 use crate::heating::HeatFlux;
 use crate::integrate::{Integrator, event};
-use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Moment, Regime};
+use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Moment, Regime, heat_load};
 use crate::trajectory::{HeatingPeaks, Instant, Peak, Peaks, Warning};
 
 /// What was seen so far, and the loads with their rates at the end of the last step.
@@ -18,7 +18,12 @@ pub(super) struct Extremes {
     /// Cosine squared of the angle of the flight against the air less that of the cone in which lift fades; none where there is no lift.
     cone: Option<Dual64>,
     faded: bool,
-    pub(super) peaks: Peaks,
+    /// Of the present phase.
+    peaks: Peaks,
+    /// Of the phases before.
+    pub(super) peaks_of_phases: Vec<(usize, Peaks)>,
+    /// Of all phases before.
+    pub(super) peaks_of_flight: Peaks,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -31,29 +36,13 @@ impl Extremes {
         let forces = motion.forces();
         let start = Moment::of::<F, N>(0.0, integrator.state(), integrator.derivative());
         let loads = finite(loads_at(forces, &start), 0.0)?;
-        let peak = |quantity: Dual64| Peak { value: quantity.re, time: 0.0, altitude: loads.altitude.re };
-        let peaks = Peaks {
-            deceleration: peak(loads.deceleration),
-            load_factor: peak(loads.load_factor),
-            dynamic_pressure: peak(loads.dynamic_pressure),
-            altitude: peak(loads.altitude),
-            mach: loads.mach.map(peak),
-            heating: loads.heat_flux.map(|flux| {
-                let [none, total] = [peak(Dual64::from(0.0)), peak(flux.total())];
-                let [convective_heat_flux, radiative_heat_flux] = [flux.convective, flux.radiative].map(peak);
-                HeatingPeaks {
-                    convective_heat_flux,
-                    radiative_heat_flux,
-                    heat_flux: total,
-                    heat_load: none,
-                    wall_temperature: none,
-                }
-            }),
-        };
+        let peaks = peaks_at(&loads, 0.0);
         let cone = may_lift.then(|| outside_cone(forces, &start));
         let faded = cone.is_some_and(|cone| cone.re < 0.0);
         let warnings = if faded { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
-        let mut extremes = Self { loads, stage: (0, forces.regime()), cone, faded, peaks, warnings };
+        let stage = (0, forces.regime());
+        let (peaks_of_phases, peaks_of_flight) = (Vec::new(), peaks);
+        let mut extremes = Self { loads, stage, cone, faded, peaks, peaks_of_phases, peaks_of_flight, warnings };
         extremes.warn_outside_tables(forces, 0.0);
         Ok(extremes)
     }
@@ -67,8 +56,13 @@ impl Extremes {
         let stage = (passage.phase, forces.regime());
         if stage != self.stage {
             // The loads may jump where a formula changes, and where something happens.
-            self.stage = stage;
-            self.jump(forces, &passage.start())?;
+            let before = std::mem::replace(&mut self.stage, stage);
+            if before.0 == stage.0 {
+                self.jump(forces, &passage.start())?;
+            } else {
+                self.end_phase(before.0, forces, passage.step.start_time, heat_load(&passage.step.start));
+                self.begin_phase(forces, &passage.start())?;
+            }
             self.warn_outside_tables(forces, passage.step.start_time);
         }
         let end = passage.end();
@@ -105,26 +99,42 @@ impl Extremes {
         Ok(())
     }
 
+    /// Begins the peaks anew with the loads of a phase at its start.
+    fn begin_phase(&mut self, forces: &Forces, start: &Moment) -> Result<(), SimulationError> {
+        self.loads = finite(loads_at(forces, start), start.time.re)?;
+        self.peaks = peaks_at(&self.loads, start.time.re);
+        Ok(())
+    }
+
     /// Ends with the flight, whose last instant may have brought a jump.
     pub(super) fn end(&mut self, forces: &Forces, last: &Instant) -> Result<(), SimulationError> {
         let Instant { time, state, heat_load, phase, .. } = last;
         if *phase != self.stage.0 {
+            self.end_phase(self.stage.0, forces, *time, *heat_load);
             let state =
                 PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
-            let heat_load = Dual64::from(heat_load.unwrap_or(0.0));
-            self.jump(forces, &Moment { time: Dual64::from(*time), state, heat_load })?;
+            let heat = Dual64::from(heat_load.unwrap_or(0.0));
+            self.begin_phase(forces, &Moment { time: Dual64::from(*time), state, heat_load: heat })?;
         }
-        if let (Some(heating), Some(heat_load), Some(nose)) = (&mut self.peaks.heating, heat_load, forces.heating()) {
-            heating.heat_load = Peak { value: *heat_load, time: *time, altitude: self.loads.altitude.re };
+        self.end_phase(*phase, forces, *time, *heat_load);
+        Ok(())
+    }
+
+    /// Notes the peaks of a phase that ends, and the heat load then.
+    fn end_phase(&mut self, phase: usize, forces: &Forces, time: f64, heat_load: Option<f64>) {
+        let mut peaks = self.peaks;
+        if let (Some(heating), Some(heat_load), Some(nose)) = (&mut peaks.heating, heat_load, forces.heating()) {
+            heating.heat_load = Peak { value: heat_load, time, altitude: self.loads.altitude.re };
             let value = nose.wall_temperature(heating.heat_flux.value);
             heating.wall_temperature = Peak { value, ..heating.heat_flux };
         }
-        Ok(())
+        self.peaks_of_flight.include(&peaks);
+        self.peaks_of_phases.push((phase, peaks));
     }
 
     /// Whether a peak may lie inside a step, as far as the rates at its ends tell.
     fn may_rise(&self, start: &Loads<Dual64>, end: &Loads<Dual64>, length: f64) -> bool {
-        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach, heating } = &self.peaks;
+        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, speed, mach, heating } = &self.peaks;
         let above = |peak: &Peak, quantity: fn(&Loads<Dual64>) -> Dual64| {
             let (start, end) = (quantity(start), quantity(end));
             start.re.max(end.re) + length * start.eps.abs().max(end.eps.abs()) > peak.value
@@ -133,6 +143,7 @@ impl Extremes {
             || above(load_factor, |loads| loads.load_factor)
             || above(dynamic_pressure, |loads| loads.dynamic_pressure)
             || above(altitude, |loads| loads.altitude)
+            || above(speed, |loads| loads.speed)
             || mach.as_ref().is_some_and(|mach| above(mach, mach_of))
             || heating.as_ref().is_some_and(|heating| {
                 above(&heating.convective_heat_flux, |loads| heat_flux_of(loads).convective)
@@ -153,6 +164,30 @@ impl Extremes {
     }
 }
 
+/// The peaks of an instant.
+fn peaks_at(loads: &Loads<Dual64>, time: f64) -> Peaks {
+    let peak = |quantity: Dual64| Peak { value: quantity.re, time, altitude: loads.altitude.re };
+    Peaks {
+        deceleration: peak(loads.deceleration),
+        load_factor: peak(loads.load_factor),
+        dynamic_pressure: peak(loads.dynamic_pressure),
+        altitude: peak(loads.altitude),
+        speed: peak(loads.speed),
+        mach: loads.mach.map(peak),
+        heating: loads.heat_flux.map(|flux| {
+            let [none, total] = [peak(Dual64::from(0.0)), peak(flux.total())];
+            let [convective_heat_flux, radiative_heat_flux] = [flux.convective, flux.radiative].map(peak);
+            HeatingPeaks {
+                convective_heat_flux,
+                radiative_heat_flux,
+                heat_flux: total,
+                heat_load: none,
+                wall_temperature: none,
+            }
+        }),
+    }
+}
+
 /// Raises every peak to the greatest value that its quantity has in a step, between the looks at it.
 fn raise_all(
     peaks: &mut Peaks,
@@ -160,11 +195,12 @@ fn raise_all(
     inside: impl Fn(f64) -> Loads<Dual64> + Copy,
     time: impl Fn(f64) -> f64 + Copy,
 ) {
-    let Peaks { deceleration, load_factor, dynamic_pressure, altitude, mach, heating } = peaks;
+    let Peaks { deceleration, load_factor, dynamic_pressure, altitude, speed, mach, heating } = peaks;
     raise(deceleration, looks, inside, time, |loads| loads.deceleration);
     raise(load_factor, looks, inside, time, |loads| loads.load_factor);
     raise(dynamic_pressure, looks, inside, time, |loads| loads.dynamic_pressure);
     raise(altitude, looks, inside, time, |loads| loads.altitude);
+    raise(speed, looks, inside, time, |loads| loads.speed);
     if let Some(mach) = mach {
         raise(mach, looks, inside, time, mach_of);
     }
@@ -218,8 +254,9 @@ fn raise(
 
 /// The loads, of which every one must be a finite number.
 fn finite(loads: Loads<Dual64>, time: f64) -> Result<Loads<Dual64>, SimulationError> {
-    let Loads { altitude, density, air_speed, mach, dynamic_pressure, deceleration, load_factor, heat_flux } = loads;
-    let always = [altitude, density, air_speed, dynamic_pressure, deceleration, load_factor];
+    let Loads { altitude, density, speed, air_speed, mach, dynamic_pressure, deceleration, load_factor, heat_flux } =
+        loads;
+    let always = [altitude, density, speed, air_speed, dynamic_pressure, deceleration, load_factor];
     let finite = always.into_iter().chain(mach).chain(heat_flux.map(|flux| flux.total())).all(|x| x.re.is_finite());
     if finite { Ok(loads) } else { Err(SimulationError::Overflow { time }) }
 }

@@ -3,7 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::io::Write;
 
-use reentry::coordinates::FlightPath;
+use reentry::coordinates::{FlightPath, OrbitShape, OrbitalElements, UndefinedElements};
+use reentry::planet::Planet;
 use reentry::trajectory::FlightPoint;
 use serde::{Serialize, Serializer};
 use utoipa::openapi::schema::{ArrayBuilder, KnownFormat, ObjectBuilder, SchemaFormat, SchemaType, Type};
@@ -20,6 +21,8 @@ pub struct Column {
     pub name: &'static str,
     /// Its meaning and unit.
     pub description: &'static str,
+    /// Whether it is given only where `output.columns` names it.
+    on_request: bool,
     needs: Needs,
     quantity: Quantity,
 }
@@ -33,6 +36,7 @@ enum Needs {
     Epoch,
     Heating,
     ChangingMass,
+    Thrust,
 }
 
 /// How a column is made from a point of the flight.
@@ -44,6 +48,10 @@ enum Quantity {
     Turn(fn(&FlightPoint) -> f64),
     /// Null where there is none.
     Maybe(fn(&FlightPoint) -> Option<f64>),
+    /// Of the osculating orbit; null where it has none.
+    Orbit(fn(&Orbit) -> Option<f64>),
+    /// An angle of the osculating orbit, in [0, 2π); null where it has none.
+    OrbitTurn(fn(&Orbit) -> Option<f64>),
     /// The time in UTC.
     Utc,
 }
@@ -62,14 +70,38 @@ pub struct Known {
     pub heating: bool,
     /// Whether the mass may change.
     pub changing_mass: bool,
+    /// Whether a thrust may be on.
+    pub thrust: bool,
+    /// Where it flies.
+    pub planet: Planet,
+    /// By which the planet is turned from the inertial frame of date at t = 0, rad.
+    pub sidereal_angle: f64,
+}
+
+/// The orbit on which a vehicle would go on under the planet's gravity alone.
+struct Orbit {
+    elements: OrbitalElements,
+    undefined: UndefinedElements,
+    equatorial_radius: f64,
+}
+
+impl Orbit {
+    fn of(point: &FlightPoint, known: &Known) -> Option<Self> {
+        let (elements, undefined) = point.orbital_elements(&known.planet, known.sidereal_angle)?;
+        Some(Self { elements, undefined, equatorial_radius: known.planet.equatorial_radius() })
+    }
+}
+
+const fn of(name: &'static str, description: &'static str, quantity: Quantity) -> Column {
+    Column { name, description, on_request: false, needs: Needs::Nothing, quantity }
 }
 
 const fn column(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
-    Column { name, description, needs: Needs::Nothing, quantity: Quantity::Number(value) }
+    of(name, description, Quantity::Number(value))
 }
 
 const fn angle(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
-    Column { name, description, needs: Needs::Nothing, quantity: Quantity::Angle(value) }
+    of(name, description, Quantity::Angle(value))
 }
 
 const fn maybe(
@@ -78,11 +110,19 @@ const fn maybe(
     needs: Needs,
     value: fn(&FlightPoint) -> Option<f64>,
 ) -> Column {
-    Column { name, description, needs, quantity: Quantity::Maybe(value) }
+    Column { needs, ..of(name, description, Quantity::Maybe(value)) }
+}
+
+const fn orbit(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
+    Column { on_request: true, ..of(name, description, Quantity::Orbit(value)) }
+}
+
+const fn orbit_turn(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
+    Column { on_request: true, ..of(name, description, Quantity::OrbitTurn(value)) }
 }
 
 /// Every quantity, in the order of the answer.
-pub static COLUMNS: [Column; 33] = [
+pub static COLUMNS: [Column; 44] = [
     column("time", "Since the start, s.", |point| point.time),
     column("altitude", "Height above the planet's shape along the radius vector, m.", |point| point.loads.altitude),
     column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
@@ -109,12 +149,11 @@ pub static COLUMNS: [Column; 33] = [
         |point| point.loads.deceleration,
     ),
     column("load_factor", "Lift, drag and thrust over mass and 9.80665 m/s².", |point| point.loads.load_factor),
-    Column {
-        name: "azimuth",
-        description: "The compass direction of the heading: from north (0) towards east (π/2), in [0, 2π).",
-        needs: Needs::Nothing,
-        quantity: Quantity::Turn(azimuth),
-    },
+    of(
+        "azimuth",
+        "The compass direction of the heading: from north (0) towards east (π/2), in [0, 2π).",
+        Quantity::Turn(azimuth),
+    ),
     column("air_speed", "Relative to the air, m/s.", |point| point.loads.air_speed),
     maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Needs::Temperature, |point| {
         point.temperature
@@ -154,11 +193,12 @@ pub static COLUMNS: [Column; 33] = [
         |point| point.specific_energy,
     ),
     Column {
-        name: "utc",
-        description: "The instant in UTC, RFC 3339 to the microsecond; with an epoch; leap seconds counted. Null after \
-                      the year 9999.",
         needs: Needs::Epoch,
-        quantity: Quantity::Utc,
+        ..of(
+            "utc",
+            "The instant in UTC, RFC 3339 to the microsecond; with an epoch; leap seconds counted. Null after the year 9999.",
+            Quantity::Utc,
+        )
     },
     maybe(
         "convective_heat_flux",
@@ -184,13 +224,72 @@ pub static COLUMNS: [Column; 33] = [
         Needs::Heating,
         |point| point.wall_temperature,
     ),
+    Column { needs: Needs::ChangingMass, ..column("mass", "kg; where an event may change it.", |point| point.mass) },
+    column(
+        "ground_range",
+        "From the initial ground point to that of the vehicle along the great circle between them, m, on the sphere of \
+         the equatorial radius r₀; at most π r₀.",
+        |point| point.ground_range,
+    ),
+    column(
+        "ground_distance",
+        "The length of the ground track since the start, m, on the sphere of the equatorial radius.",
+        |point| point.ground_distance,
+    ),
+    orbit("semi_major_axis", SEMI_MAJOR_AXIS, |orbit| match orbit.elements.shape {
+        OrbitShape::SemiMajorAxis(axis) => Some(axis),
+        OrbitShape::SemiLatusRectum(_) => None,
+    }),
+    orbit("eccentricity", "Of the osculating orbit; null for motion along the radius vector.", |orbit| {
+        Some(orbit.elements.eccentricity)
+    }),
+    orbit_turn(
+        "inclination",
+        "Of the osculating orbit against the equator, in [0, π]; null for motion along the radius vector.",
+        |orbit| Some(orbit.elements.inclination),
+    ),
+    orbit_turn(
+        "raan",
+        "The right ascension of the ascending node of the osculating orbit, in [0, 2π), in the inertial frame of date: \
+         that of /convert, from which the planet is turned by the sidereal time; null for an orbit in the equator, and \
+         for motion along the radius vector.",
+        |orbit| Some(orbit.elements.raan).filter(|_| !orbit.undefined.equatorial),
+    ),
+    orbit_turn(
+        "argument_of_periapsis",
+        "Of the osculating orbit, from the ascending node, in [0, 2π); for an orbit in the equator from the inertial x \
+         axis in the direction of motion; null for a circle, and for motion along the radius vector.",
+        |orbit| Some(orbit.elements.argument_of_periapsis).filter(|_| !orbit.undefined.circular),
+    ),
+    orbit_turn(
+        "true_anomaly",
+        "On the osculating orbit, from the periapsis, in [0, 2π); on a circle from the ascending node, or where there \
+         is none from the inertial x axis; null for motion along the radius vector.",
+        |orbit| Some(orbit.elements.true_anomaly),
+    ),
+    orbit(
+        "apoapsis_altitude",
+        "Of the apoapsis of the osculating orbit above the equatorial radius, m; null for an unbound orbit, and for \
+         motion along the radius vector.",
+        |orbit| orbit.elements.apoapsis_radius().map(|radius| radius - orbit.equatorial_radius),
+    ),
+    orbit(
+        "periapsis_altitude",
+        "Of the periapsis of the osculating orbit above the equatorial radius, m: negative where the orbit leads into \
+         the planet; null for motion along the radius vector.",
+        |orbit| Some(orbit.elements.periapsis_radius() - orbit.equatorial_radius),
+    ),
     Column {
-        name: "mass",
-        description: "kg; where an event may change it.",
-        needs: Needs::ChangingMass,
-        quantity: Quantity::Number(|point| point.mass),
+        on_request: true,
+        needs: Needs::Thrust,
+        ..column("thrust", "Its magnitude, N, 0 while it is off; where an event switches it on.", |point| point.thrust)
     },
 ];
+
+/// Says once what an osculating orbit is.
+const SEMI_MAJOR_AXIS: &str = "Of the osculating orbit, m: that on which the vehicle would go on from here under the \
+                               gravity of a point alone, with the gravitational parameter of /convert. Negative for a \
+                               hyperbola; null for a parabola, and for motion along the radius vector.";
 
 /// The compass direction of the heading, in [0, 2π); 0 where there is none, at rest and in vertical flight.
 fn azimuth(point: &FlightPoint) -> f64 {
@@ -232,22 +331,29 @@ impl Column {
             Needs::Epoch if known.epoch.is_none() => Some("an epoch"),
             Needs::Heating if !known.heating => Some("heating"),
             Needs::ChangingMass if !known.changing_mass => Some("an event that changes it"),
+            Needs::Thrust if !known.thrust => Some("an event that switches a thrust on"),
             _ => None,
         }
     }
 
-    /// Every column that the case has.
+    /// Every column that the case has unasked.
     fn all(known: Known) -> impl Iterator<Item = &'static Self> {
-        COLUMNS.iter().filter(move |column| column.missing(known).is_none())
+        COLUMNS.iter().filter(move |column| !column.on_request && column.missing(known).is_none())
     }
 
-    fn of(&self, point: &FlightPoint, unit: AngleUnit, epoch: Option<Instant>) -> Cell {
+    fn of(&self, point: &FlightPoint, unit: AngleUnit, known: &Known) -> Cell {
+        let or_nothing = |value: Option<f64>| value.map_or(Cell::Nothing, Cell::Number);
         match self.quantity {
             Quantity::Number(value) => Cell::Number(value(point)),
             Quantity::Angle(value) => Cell::Number(unit.from_radians(value(point))),
             Quantity::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
-            Quantity::Maybe(value) => value(point).map_or(Cell::Nothing, Cell::Number),
-            Quantity::Utc => epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant),
+            Quantity::Maybe(value) => or_nothing(value(point)),
+            Quantity::Orbit(value) => or_nothing(Orbit::of(point, known).as_ref().and_then(value)),
+            Quantity::OrbitTurn(value) => {
+                let angle = Orbit::of(point, known).as_ref().and_then(value);
+                or_nothing(angle.map(|angle| unit.turn_from_radians(angle)))
+            }
+            Quantity::Utc => known.epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant),
         }
     }
 
@@ -258,7 +364,9 @@ impl Column {
             (Quantity::Utc, _) => ObjectBuilder::new()
                 .schema_type(types(Type::String))
                 .format(Some(SchemaFormat::KnownFormat(KnownFormat::DateTime))),
-            (Quantity::Maybe(_), Needs::Nothing) => ObjectBuilder::new().schema_type(types(Type::Number)),
+            (Quantity::Maybe(_), Needs::Nothing) | (Quantity::Orbit(_) | Quantity::OrbitTurn(_), _) => {
+                ObjectBuilder::new().schema_type(types(Type::Number))
+            }
             _ => ObjectBuilder::new().schema_type(Type::Number),
         }
     }
@@ -282,7 +390,7 @@ impl Row {
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(Column::all(self.known).map(|column| {
-            let cell = column.of(&self.point, self.unit, self.known.epoch);
+            let cell = column.of(&self.point, self.unit, &self.known);
             (column.name, cell)
         }))
     }
@@ -295,7 +403,7 @@ impl PartialSchema for Row {
             let object = object.property(column.name, column.schema().description(Some(column.description)));
             if column.needs == Needs::Nothing { object.required(column.name) } else { object }
         };
-        COLUMNS.iter().fold(object, with).into()
+        COLUMNS.iter().filter(|column| !column.on_request).fold(object, with).into()
     }
 }
 
@@ -307,7 +415,7 @@ pub struct Columns {
     points: Vec<FlightPoint>,
     chosen: Vec<&'static Column>,
     unit: AngleUnit,
-    epoch: Option<Instant>,
+    known: Known,
 }
 
 impl Serialize for Columns {
@@ -319,7 +427,7 @@ impl Serialize for Columns {
 impl PartialSchema for Columns {
     fn schema() -> RefOr<Schema> {
         let description = "The trajectory: one array a quantity, all of one length, time strictly increasing. \
-                           With `output.columns` those alone.";
+                           With `output.columns` those alone; some are given only there.";
         let object = ObjectBuilder::new().description(Some(description));
         let with = |object: ObjectBuilder, column: &Column| {
             let array = ArrayBuilder::new().items(column.schema()).description(Some(column.description));
@@ -338,7 +446,7 @@ struct Values<'a> {
 
 impl Serialize for Values<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Columns { points, unit, epoch, .. } = self.columns;
+        let Columns { points, unit, known, .. } = self.columns;
         // The kind of the quantity is looked at once, not at every value.
         match self.column.quantity {
             Quantity::Number(value) => serializer.collect_seq(points.iter().map(value)),
@@ -349,16 +457,18 @@ impl Serialize for Values<'_> {
                 serializer.collect_seq(points.iter().map(|point| unit.turn_from_radians(value(point))))
             }
             Quantity::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
-            Quantity::Utc => serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, *epoch))),
+            Quantity::Utc | Quantity::Orbit(_) | Quantity::OrbitTurn(_) => {
+                serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, known)))
+            }
         }
     }
 }
 
 impl Columns {
-    /// The chosen columns at the points of a flight of which so much is known; without a choice all that there are.
+    /// The chosen columns at the points of a flight of which so much is known; without a choice all that are given unasked.
     pub fn new(points: Vec<FlightPoint>, chosen: Option<Vec<&'static Column>>, unit: AngleUnit, known: Known) -> Self {
         let chosen = chosen.unwrap_or_else(|| Column::all(known).collect());
-        Self { points, chosen, unit, epoch: known.epoch }
+        Self { points, chosen, unit, known }
     }
 
     /// The instants.
@@ -368,7 +478,7 @@ impl Columns {
 
     /// The instant t = 0.
     pub fn epoch(&self) -> Option<Instant> {
-        self.epoch
+        self.known.epoch
     }
 
     /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
@@ -385,7 +495,7 @@ impl Columns {
                 if index > 0 {
                     line(csv, b",")?;
                 }
-                match column.of(point, self.unit, self.epoch) {
+                match column.of(point, self.unit, &self.known) {
                     Cell::Number(number) => serde_json::to_writer(&mut *csv, &number)?,
                     Cell::Instant(instant) => write!(csv, "{instant}").map_err(serde_json::Error::io)?,
                     Cell::Nothing => {}

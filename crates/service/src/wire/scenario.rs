@@ -116,7 +116,7 @@ pub struct Output {
     /// `false`: no trajectory in the answer.
     #[schema(required = false, value_type = bool)]
     pub trajectory: Option<bool>,
-    /// The columns of the trajectory, in this order; without it, all that the case has.
+    /// The columns of the trajectory, in this order; without it, all that the case has but those of the osculating orbit and `thrust`.
     /// Not with `"trajectory": false`, not on a map, and not for `/analytic`, which has columns of its own.
     #[schema(required = false, value_type = Vec<String>)]
     pub columns: Option<Vec<&'static Column>>,
@@ -269,6 +269,9 @@ impl SimulateRequest {
             epoch: self.epoch,
             heating: self.heating.is_some(),
             changing_mass: self.events.iter().any(Event::changes_mass),
+            thrust: self.events.iter().any(|event| event.then.thrust.is_some()),
+            planet: self.planet.core,
+            sidereal_angle: self.initial_state.sidereal_angle(self.epoch, self.angle_unit, &self.planet),
         }
     }
 

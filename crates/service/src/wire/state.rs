@@ -104,6 +104,12 @@ impl State {
         }
     }
 
+    /// The angle in radians by which the planet is turned from the inertial frame of date; 0 where the request has a fault about it.
+    pub fn sidereal_angle(&self, epoch: Option<Instant>, unit: AngleUnit, planet: &Planet) -> f64 {
+        let orientation = self.orientation(epoch, "", unit, planet);
+        orientation.map_or(0.0, |orientation| orientation.sidereal.to_angle(unit, &planet.core))
+    }
+
     /// The planet-fixed position and velocity of a state at the pointer, and how its inertial frame lies.
     ///
     /// # Errors

@@ -115,6 +115,7 @@ fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Instant>
         ("load_factor", "g", Some(peaks.load_factor)),
         ("dynamic_pressure", "Pa", Some(peaks.dynamic_pressure)),
         ("altitude", "m", Some(peaks.altitude)),
+        ("speed", "m/s", Some(peaks.speed)),
         ("mach", "", peaks.mach),
         ("convective_heat_flux", "W/m²", peaks.convective_heat_flux),
         ("radiative_heat_flux", "W/m²", peaks.radiative_heat_flux.filter(|peak| peak.value > 0.0)),

@@ -2,7 +2,8 @@
 
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{
-    self, EventPoint, FlightPoint, HeatingPeaks, Peaks as CorePeaks, Termination as CoreTermination, Trajectory,
+    self, EventPoint, FlightPhase, FlightPoint, HeatingPeaks, Peaks as CorePeaks, PhaseStart,
+    Termination as CoreTermination, Trajectory,
 };
 use serde::Serialize;
 use serde_json::Value;
@@ -33,7 +34,7 @@ pub enum Termination {
     AtmosphereExit,
 }
 
-/// The greatest value of a quantity over the flight, the earliest where it is reached more than once.
+/// The greatest value of a quantity over the flight, or over a phase of it, the earliest where it is reached more than once.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Peak {
     /// In the unit of the quantity.
@@ -44,7 +45,7 @@ pub struct Peak {
     pub altitude: f64,
 }
 
-/// The peaks of the flight, both ends included.
+/// The peaks of the flight, or of a phase of it, both ends included.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Peaks {
     /// -dV/dt, m/s².
@@ -55,6 +56,8 @@ pub struct Peaks {
     pub dynamic_pressure: Peak,
     /// m.
     pub altitude: Peak,
+    /// Relative to the rotating planet, m/s.
+    pub speed: Peak,
     /// The speed relative to the air over that of sound; where the atmosphere has a temperature.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -71,7 +74,7 @@ pub struct Peaks {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub heat_flux: Option<Peak>,
-    /// Of the whole flight, J/m²; with heating.
+    /// Since the start of the flight, J/m²; with heating.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub heat_load: Option<Peak>,
@@ -96,6 +99,35 @@ pub struct EventReport {
     pub state: Row,
     /// The state then, after its effect.
     pub after: Row,
+}
+
+/// With what a phase begins.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct PhaseOrigin {
+    /// The place of the event in the list of the request; of several events at one instant, the last that changes the vehicle.
+    pub index: usize,
+    /// Of the event, as in the request.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub name: Option<String>,
+    /// True where the phase begins when the propellant is spent; the event had switched that thrust on.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[schema(required = false)]
+    pub burnout: bool,
+}
+
+/// A part of the flight in which the vehicle stays the same. The first has no length where an event changes the vehicle at the start,
+/// the last where one does at the end.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct PhaseReport {
+    /// With what it begins; null at the start of the flight.
+    pub from: Option<PhaseOrigin>,
+    /// When it begins, s.
+    pub since: f64,
+    /// When it ends, s.
+    pub until: f64,
+    /// The greatest values in it: at its start those after the change, at its end those before the next one.
+    pub peaks: Peaks,
 }
 
 /// The models that flew.
@@ -172,6 +204,11 @@ pub struct SimulateResponse {
     pub events: Option<Vec<EventReport>>,
     /// The greatest values.
     pub peaks: Peaks,
+    /// The parts of the flight between the events that change the vehicle: its mass, area, coefficients or thrust; where there are any.
+    /// The greatest of their peaks are `peaks`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub phases: Option<Vec<PhaseReport>>,
     /// The rows that were asked for; absent with `"output": {"trajectory": false}`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -211,6 +248,21 @@ impl SimulateResponse {
             after: row(after),
         };
         let events = (!request.events.is_empty()).then(|| flight.events().map(report).collect());
+        let origin = |event: usize, burnout| {
+            Some(PhaseOrigin { index: event, name: request.events[event].name.clone(), burnout })
+        };
+        let phase = |FlightPhase { from, since, until, peaks }| PhaseReport {
+            from: match from {
+                PhaseStart::Start => None,
+                PhaseStart::Event(event) => origin(event, false),
+                PhaseStart::Burnout(event) => origin(event, true),
+            },
+            since,
+            until,
+            peaks: Peaks::from(&peaks),
+        };
+        let phases = flight.phases();
+        let phases = (phases.len() > 1).then(|| phases.into_iter().map(phase).collect());
         let (termination, condition) = match flight.termination() {
             CoreTermination::SurfaceImpact => (Termination::SurfaceImpact, None),
             CoreTermination::StopAltitude => (Termination::StopAltitude, None),
@@ -237,6 +289,7 @@ impl SimulateResponse {
             final_state: row(flight.last()),
             events,
             peaks: Peaks::from(flight.peaks()),
+            phases,
             sensitivities: extras.sensitivities,
             verification: extras.verification,
             solver: SolverReport {
@@ -262,6 +315,7 @@ impl From<&CorePeaks> for Peaks {
             load_factor: peak(peaks.load_factor),
             dynamic_pressure: peak(peaks.dynamic_pressure),
             altitude: peak(peaks.altitude),
+            speed: peak(peaks.speed),
             mach: peaks.mach.map(peak),
             convective_heat_flux: of_heating(|heating| heating.convective_heat_flux),
             radiative_heat_flux: of_heating(|heating| heating.radiative_heat_flux),

@@ -44,7 +44,9 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
     end('flight_path_angle'),
     ...peaks,
     { label: 'Highest point', unit: 'km', value: highest.value / 1e3, note: `${number(highest.time, 5)} s` },
-    ...(final.downrange === undefined ? [] : [{ label: 'Downrange', unit: 'km', value: final.downrange / 1e3 }]),
+    final.downrange === undefined
+      ? { label: 'Ground range', unit: 'km', value: (final.ground_range ?? Number.NaN) / 1e3 }
+      : { label: 'Downrange', unit: 'km', value: final.downrange / 1e3 },
   ];
 }
 

@@ -62,10 +62,11 @@ export function flightOf(answer: Answer): Flight {
         .filter(([name, value]) => name in QUANTITIES && typeof value === 'number')
         .map(([name, value]) => [name, value * factor(name as Name)]),
     );
+  const columnOf = (values: (number | null)[], scale: number) => values.map((value) => (value === null ? Number.NaN : value * scale));
   const columns = Object.fromEntries(
     Object.entries(answer.trajectory ?? {})
       .filter(([name]) => name in QUANTITIES)
-      .map(([name, values]) => [name, factor(name as Name) === 1 ? values : (values as number[]).map((value) => value * DEGREES)]),
+      .map(([name, values]) => [name, columnOf(values as (number | null)[], factor(name as Name))]),
   ) as Trajectory;
   return { answer, columns, initial: numbers(answer.initial_state), final: numbers(answer.final_state), marks: marksOf(answer) };
 }

@@ -37,7 +37,10 @@ export const QUANTITIES: Record<Name, Quantity> = {
   wall_temperature: plain('Wall temperature', 'K'),
   downrange: plain('Downrange', 'km', 1e-3),
   crossrange: plain('Crossrange', 'km', 1e-3),
+  ground_range: plain('Ground range', 'km', 1e-3),
+  ground_distance: plain('Length of the ground track', 'km', 1e-3),
   mass: plain('Mass', 'kg'),
+  thrust: plain('Thrust', 'N'),
   bank_angle: angle('Bank angle'),
   angle_of_attack: angle('Angle of attack'),
   density: plain('Air density', 'kg/m³'),
@@ -52,6 +55,14 @@ export const QUANTITIES: Record<Name, Quantity> = {
   inertial_speed: plain('Inertial speed', 'm/s'),
   inertial_flight_path_angle: angle('Inertial flight-path angle'),
   specific_energy: plain('Specific energy', 'MJ/kg', 1e-6),
+  semi_major_axis: plain('Semi-major axis', 'km', 1e-3),
+  eccentricity: plain('Eccentricity', ''),
+  inclination: angle('Inclination'),
+  raan: angle('Right ascension of the ascending node'),
+  argument_of_periapsis: angle('Argument of periapsis'),
+  true_anomaly: angle('True anomaly'),
+  apoapsis_altitude: plain('Apoapsis altitude', 'km', 1e-3),
+  periapsis_altitude: plain('Periapsis altitude', 'km', 1e-3),
 };
 
 /** By which a number of a column is multiplied to be shown, angles in a unit. */

@@ -415,6 +415,17 @@ const COLUMNS = [
   'heat_load',
   'wall_temperature',
   'mass',
+  'ground_range',
+  'ground_distance',
+  'semi_major_axis',
+  'eccentricity',
+  'inclination',
+  'raan',
+  'argument_of_periapsis',
+  'true_anomaly',
+  'apoapsis_altitude',
+  'periapsis_altitude',
+  'thrust',
 ] as const satisfies readonly (keyof Schemas['Columns'])[];
 
 /** The form of a case, a section each. */
