@@ -32,7 +32,8 @@ fn level(radius: f64, speed: f64, heading: f64) -> FlightPath<f64> {
 }
 
 fn at(time: f64, then: Effect) -> Event {
-    Event { when: Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising }, then }
+    let when = Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising };
+    Event { when: when.into(), then }
 }
 
 fn push(along: Axis, speed_change: f64) -> Effect {
@@ -184,11 +185,11 @@ fn a_track_that_turns_back_is_as_long_as_both_ways() {
 
 /// Of a flight, the downrange by rows that are so dense that none of them is half a turn from the one before.
 fn unwrapped(flight: &Trajectory, rows: usize) -> Vec<(f64, f64)> {
-    let circle = GreatCircle::of(&flight.initial().flight_path.to_planet_fixed()).unwrap();
+    let circle = GreatCircle::of(&flight.initial().flight_path.to_planet_fixed());
     let mut last = 0.0;
     let points = flight.points(&flight.instants(&Sampling::Count(rows), rows).unwrap());
     let follow = |point: &reentry::trajectory::FlightPoint| {
-        let [along, _] = circle.along_and_across(&point.flight_path.to_planet_fixed().position);
+        let [along, _] = circle.along_and_across(&point.flight_path.to_planet_fixed().position).unwrap();
         let turned = along - last;
         last += turned - TAU * (turned / TAU).round();
         (point.time, last * EQUATORIAL_RADIUS)

@@ -1,7 +1,8 @@
 //! The phases of a flight, between the events that change the vehicle, and their peaks.
 
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
 use reentry::heating::{Convective, Heating, Radiative};
+use reentry::parachute::Parachute;
 use reentry::propulsion::{Axis, Impulse, Thrust};
 use reentry::trajectory::{FlightPhase, FlightPoint, Peak, PhaseStart};
 use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Stop, Trajectory, Vehicle};
@@ -9,12 +10,12 @@ use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Stop, Trajectory, Vehi
 use crate::check::{near, relative};
 use crate::flights::{fly, spherical, target_2, vehicle};
 
-fn falls(quantity: Quantity, value: f64) -> Condition {
-    Condition { quantity, value, direction: Direction::Falling }
+fn falls(quantity: Quantity, value: f64) -> Trigger {
+    Condition { quantity, value, direction: Direction::Falling }.into()
 }
 
-fn at(time: f64) -> Condition {
-    Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising }
+fn at(time: f64) -> Trigger {
+    Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising }.into()
 }
 
 fn mass(mass: f64) -> Effect {
@@ -31,7 +32,7 @@ fn impulse(speed_change: f64) -> Effect {
 }
 
 fn thrust(force: f64, propellant: Option<f64>) -> Effect {
-    let thrust = Thrust { along: Axis::Velocity, force, specific_impulse: 300.0, propellant };
+    let thrust = Thrust { along: Axis::Velocity, force, specific_impulse: Some(300.0), propellant };
     Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
 }
 
@@ -223,4 +224,26 @@ fn what_changes_at_the_start_or_at_the_end_has_a_phase() {
     }
     assert!(flown.peaks.load_factor.value < opened.peaks.load_factor.value);
     assert_eq!(flight.peaks().load_factor, opened.peaks.load_factor);
+}
+
+/// A parachute that fills belongs to the event that deploys it, from there on: neither the delay nor the inflation begins a phase of its own.
+#[test]
+fn a_parachute_that_fills_begins_one_phase() {
+    let parachute = Parachute { drag_area: 70.0, inflation_time: 4.0, delay: 2.0 };
+    let deploy = Effect { deploy: Some(parachute), ..Effect::default() };
+    let release = Effect { release: vec![0], ..Effect::default() };
+    let flight = fly(&with(vec![
+        Event { when: falls(Quantity::Mach, 0.9), then: deploy },
+        Event { when: falls(Quantity::Altitude, 5e3), then: release },
+    ]));
+    assert_eq!(starts(&flight), [PhaseStart::Start, PhaseStart::Event(0), PhaseStart::Event(1)]);
+    let phase = flight.phases()[1];
+    let states = states(&flight, &phase);
+    for (what, peak, value) in peaks(&phase) {
+        let greatest = states.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+        assert!(peak.value >= greatest - 1e-9 * greatest.abs(), "{what}: {} is below {greatest}", peak.value);
+        near(what, peak.value, greatest, 1e-4 * greatest.abs().max(1e-6));
+    }
+    let filling = phase.since + 2.0..phase.since + 6.0;
+    assert!(filling.contains(&phase.peaks.load_factor.time), "{} s", phase.peaks.load_factor.time);
 }
