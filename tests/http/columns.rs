@@ -87,6 +87,39 @@ async fn the_columns_of_the_orbit_are_those_of_convert() {
     check::near("and later", number(&answer["trajectory"]["raan"][3]), 40.0, 1e-7);
 }
 
+/// Whatever frame the state comes in, the columns are in that of date: that of `/convert` for a place on the planet at the epoch.
+#[tokio::test]
+async fn the_columns_of_the_orbit_are_in_the_frame_of_date() {
+    let service = Service::new();
+    let epoch = json!("2026-11-22T12:00:00Z");
+    let mut inclinations = Vec::new();
+    for frame in ["date", "teme", "gcrf"] {
+        let mut state = with(&elements(8e6, 0.15, 51.6), "/frame", json!(frame));
+        state.as_object_mut().unwrap().remove("sidereal_time");
+        let rows = fly(&with(&in_orbit(&state), "/epoch", epoch.clone())).await["trajectory"].clone();
+        let of = |name: &str| &rows[name][0];
+        let state = json!({"type": "planet_relative", "radius": of("radius"), "longitude": of("longitude"),
+            "geocentric_latitude": of("geocentric_latitude"), "speed": of("speed"), "heading": of("heading"),
+            "flight_path_angle": of("flight_path_angle")});
+        let converted =
+            good_answer(&service, "/convert", &json!({"angle_unit": "deg", "epoch": epoch, "state": state})).await;
+        for name in &ORBIT[..6] {
+            check::relative(name, number(of(name)), number(&converted["orbital_elements"][name]), 1e-9);
+        }
+        inclinations.push(number(of("inclination")));
+    }
+    check::near("of the frame of date", inclinations[0], 51.6, 1e-9);
+    assert!((inclinations[2] - 51.6).abs() > 0.01, "precession tilts the equator: {inclinations:?}");
+    // A planet that does not turn may be turned by an angle all the same.
+    let mut state = with(&elements(8e6, 0.15, 51.6), "/sidereal_angle", json!(77));
+    state.as_object_mut().unwrap().remove("sidereal_time");
+    let planet = json!({"model": "custom", "shape": "sphere", "equatorial_radius": 6e6, "rotation_rate": 0,
+        "gravitational_parameter": 4e14});
+    let answer = fly(&with(&in_orbit(&state), "/planet", planet)).await;
+    check::near("raan", number(&answer["trajectory"]["raan"][0]), 40.0, 1e-9);
+    check::near("later", number(&answer["trajectory"]["raan"][3]), 40.0, 1e-7);
+}
+
 #[tokio::test]
 async fn what_an_orbit_does_not_have_is_null() {
     let first_row = |state: Value| async move {
