@@ -272,7 +272,7 @@ fn derivatives_pass_through_a_condition_on_the_heat_load() {
     let opens = Effect { reference_area: Some(2.0), ..Effect::default() };
     let mut case = target_2();
     case.vehicle.nose_radius = Some(0.5);
-    case.heating = Some(Heating { convective: Convective::SuttonGraves, radiative: Radiative::None, emissivity: 0.8 });
+    case.heating = Some(Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.8 });
     let total = fly(&case).last().heat_load.unwrap();
     case.events = vec![event(rises(Quantity::HeatLoad, 0.5 * total), opens)];
     let case = with_tolerance(case, 1e-13);

@@ -141,7 +141,7 @@ fn heated() -> Case {
     let start = FlightPath { speed: 7700.0, ..FlightPath::from_planet_fixed(&capsule().initial_state) };
     Case {
         vehicle: Vehicle { nose_radius: Some(1.2), ..capsule().vehicle },
-        heating: Some(Heating { convective: Convective::SuttonGraves, radiative: Radiative::None, emissivity: 0.8 }),
+        heating: Some(Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.8 }),
         initial_state: start.to_planet_fixed(),
         stop: Stop { when: vec![falls(Quantity::Speed, 1000.0).into()], ..Stop::default() },
         ..capsule()
@@ -464,10 +464,6 @@ fn faults_of_events_name_their_place() {
     let stop = Stop { ceiling: Some(-5.0), when: vec![falls(Quantity::Time, 10.0).into()], ..Stop::default() };
     assert_eq!(
         faults(Case { events: vec![mark(rises(Quantity::Mach, 1.0))], stop, ..target_2() }),
-        [
-            "events.0.when.quantity",
-            "stop.when.0.falls_through",
-            "must be greater than the stop altitude of 0 m, got -5"
-        ]
+        ["events.0.when.quantity", "stop.when.0.falls_through", "must be greater than the stop altitude, 0 m, got -5"]
     );
 }

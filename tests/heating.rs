@@ -2,8 +2,8 @@
 
 use std::f64::consts::{E, FRAC_PI_2, PI};
 
-use reentry::heating::{Convective, Heating, Radiative, STEFAN_BOLTZMANN, chapman, detra_kemp_riddell, sutton_graves};
-use reentry::heating::{Stagnation, tauber_sutton};
+use reentry::heating::{Convective, Heating, Radiative, STEFAN_BOLTZMANN, SUTTON_GRAVES_AIR, Stagnation};
+use reentry::heating::{chapman, detra_kemp_riddell, sutton_graves, tauber_sutton};
 use reentry::trajectory::{FlightPoint, HeatingPeaks, Sampling, Warning};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle};
 
@@ -56,10 +56,10 @@ fn total(point: &FlightPoint) -> f64 {
 /// NASA's Thermal and Fluids Analysis Workshop, Aerothermodynamics course (2012), lecture 1: to its printed digits.
 #[test]
 fn sutton_and_graves_give_the_flux_of_the_course() {
-    near("an entry at the Earth", sutton_graves(3.1459e-4, 3535.0, 1.0), 13.6 * CM2, 0.05 * CM2);
+    near("an entry at the Earth", sutton_graves(SUTTON_GRAVES_AIR, 3.1459e-4, 3535.0, 1.0), 13.6 * CM2, 0.05 * CM2);
     // K of the report, of pressure and enthalpy: 0.1113 √(ρV²/1 atm) V²/2, in MW for MJ; the customary constant is a rounding of that.
     let of_report = 0.1113 / (2.0 * 101_325.0_f64.sqrt());
-    relative("the constant", sutton_graves(1.0, 1.0, 1.0), of_report, 4e-3);
+    relative("the constant", sutton_graves(SUTTON_GRAVES_AIR, 1.0, 1.0, 1.0), of_report, 4e-3);
 }
 
 /// By their definition, in the units of the papers: 17 600 BTU/(ft² s) on a nose of a foot, at sea level and 26 000 ft/s.
@@ -73,8 +73,9 @@ fn the_fluxes_at_the_circular_speed_are_those_of_the_definition() {
         |factor: f64| detra_kemp_riddell(density, speed * factor, foot) / chapman(density, speed * factor, foot);
     relative("the exponents differ by 0.15", ratio(0.5), 0.5_f64.powf(0.15), 1e-14);
     let form = |flux: fn(f64, f64, f64) -> f64| flux(4e-4, 7000.0, 2.0) / flux(1e-4, 7000.0, 0.5);
+    let sutton = |density, speed, radius| sutton_graves(SUTTON_GRAVES_AIR, density, speed, radius);
     for (what, flux) in
-        [("Sutton", sutton_graves as fn(f64, f64, f64) -> f64), ("Detra", detra_kemp_riddell), ("Chapman", chapman)]
+        [("Sutton", sutton as fn(f64, f64, f64) -> f64), ("Detra", detra_kemp_riddell), ("Chapman", chapman)]
     {
         relative(what, form(flux), 1.0, 1e-14);
     }
@@ -164,8 +165,8 @@ fn the_heat_of_a_ballistic_entry_is_that_of_the_closed_form() {
         initial_state: straight_down.to_planet_fixed(),
         ..target_2()
     };
-    let flight = fly(&heated(case, Convective::SuttonGraves, Radiative::None));
-    let k = sutton_graves(1.0, 1.0, 0.5);
+    let flight = fly(&heated(case, Convective::SUTTON_GRAVES, Radiative::None));
+    let k = sutton_graves(SUTTON_GRAVES_AIR, 1.0, 1.0, 0.5);
     let HeatingPeaks { convective_heat_flux: peak, heat_load, .. } = peaks(&flight);
     let density = ballistic_coefficient / (3.0 * scale_height);
     // The peak lies where the flux is level: to 1e-9 of a step of some scale heights.
@@ -207,7 +208,7 @@ fn the_heat_load_is_the_integral_of_the_fluxes() {
 /// The load is integrated with the flight, to its tolerance.
 #[test]
 fn the_heat_load_is_as_exact_as_the_tolerance_asks() {
-    let case = heated(lunar_return(), Convective::SuttonGraves, Radiative::TauberSutton);
+    let case = heated(lunar_return(), Convective::SUTTON_GRAVES, Radiative::TauberSutton);
     let load = |tolerance: f64| peaks(&fly(&with_tolerance(case.clone(), tolerance))).heat_load.value;
     let exact = load(1e-13);
     // Errors of some hundred steps add up.
@@ -222,7 +223,7 @@ fn heating_does_not_touch_the_flight() {
     let plain = with_tolerance(lunar_return(), 1e-10);
     let (flight, exact) = (fly(&plain), fly(&with_tolerance(lunar_return(), 1e-14)));
     for (convective, radiative) in
-        [(Convective::Chapman, Radiative::None), (Convective::SuttonGraves, Radiative::TauberSutton)]
+        [(Convective::Chapman, Radiative::None), (Convective::SUTTON_GRAVES, Radiative::TauberSutton)]
     {
         let with = fly(&heated(plain.clone(), convective, radiative));
         // Both are off by what their own steps make.
@@ -235,7 +236,7 @@ fn heating_does_not_touch_the_flight() {
 /// corner of f, and exceeds them by what lies between.
 #[test]
 fn the_peaks_of_the_heating_are_the_greatest_values() {
-    let flight = fly(&heated(lunar_return(), Convective::SuttonGraves, Radiative::TauberSutton));
+    let flight = fly(&heated(lunar_return(), Convective::SUTTON_GRAVES, Radiative::TauberSutton));
     let points = rows(&flight, 100_001);
     let greatest = |of: fn(&FlightPoint) -> f64| points.iter().map(of).fold(0.0, f64::max);
     let HeatingPeaks { convective_heat_flux, radiative_heat_flux, heat_flux, wall_temperature, heat_load } =
@@ -274,16 +275,16 @@ fn a_correlation_outside_its_range_is_a_warning() {
         flight.warnings().iter().filter_map(of).collect()
     };
     let slow = Case { stop: Stop { time: 400.0, ..Stop::default() }, ..lunar_return() };
-    assert_eq!(outside(Convective::SuttonGraves, Radiative::None, slow.clone()), []);
+    assert_eq!(outside(Convective::SUTTON_GRAVES, Radiative::None, slow.clone()), []);
     assert_eq!(outside(Convective::Chapman, Radiative::None, slow.clone()), []);
-    let detra = ("the relation of Detra, Kemp and Riddell", "speed relative to the air");
+    let detra = ("Relation of Detra, Kemp and Riddell", "speed relative to the air");
     assert_eq!(outside(Convective::DetraKempRiddell, Radiative::TauberSutton, slow.clone()), [detra]);
     let small =
         |radius: f64| Case { vehicle: Vehicle { nose_radius: Some(radius), ..slow.vehicle.clone() }, ..slow.clone() };
     let flight = |radius: f64| {
         let case = small(radius);
         let heating =
-            Heating { convective: Convective::SuttonGraves, radiative: Radiative::TauberSutton, emissivity: 1.0 };
+            Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::TauberSutton, emissivity: 1.0 };
         fly(&Case { heating: Some(heating), ..case })
     };
     let nose = |radius: f64| {
@@ -299,7 +300,7 @@ fn a_correlation_outside_its_range_is_a_warning() {
 #[test]
 fn without_air_or_speed_there_is_no_heat() {
     let vacuum = Case { atmosphere: Atmosphere::Vacuum, ..lunar_return() };
-    for convective in [Convective::SuttonGraves, Convective::DetraKempRiddell, Convective::Chapman] {
+    for convective in [Convective::SUTTON_GRAVES, Convective::DetraKempRiddell, Convective::Chapman] {
         let flight = fly(&heated(vacuum.clone(), convective, Radiative::TauberSutton));
         let HeatingPeaks { heat_flux, heat_load, wall_temperature, .. } = peaks(&flight);
         assert!([heat_flux, heat_load, wall_temperature].iter().all(|peak| peak.value.to_bits() == 0));

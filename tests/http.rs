@@ -15,6 +15,7 @@ mod protocol;
 mod ranges;
 
 mod analytic;
+mod assumed;
 mod batch;
 mod columns;
 mod convert;

@@ -11,6 +11,7 @@ mod events;
 mod expensive;
 mod flights;
 mod fuzzing;
+mod gas;
 mod gravity;
 mod ground_track;
 mod heating;

@@ -342,7 +342,7 @@ fn sensitivities_hold_across_events() {
         &stopped(Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 2.0) }),
     );
     let heated = Vehicle { nose_radius: Some(0.1), ..target_2().vehicle };
-    let heating = Heating { convective: Convective::SuttonGraves, radiative: Radiative::None, emissivity: 0.9 };
+    let heating = Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.9 };
     agrees_with_differences("heated", &Case { vehicle: heated, heating: Some(heating), ..target_2() });
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use num_dual::{Dual2_64, Dual64};
 use proptest::prelude::*;
 use reentry::Atmosphere;
-use reentry::atmosphere::{Layer, Layers, Table, us76};
+use reentry::atmosphere::{Gas, Layer, Layers, Table, us76};
 use reentry::interpolation::{Cubics, Hint, Surfaces, TableError};
 use reentry::scalar::{Lanes, Scalar};
 use reentry::vehicle::{Aerodynamics, AlphaMachTable, MachTable, Vehicle};
@@ -436,6 +436,11 @@ fn models() -> Vec<(Atmosphere, usize)> {
     let temperature: &[f64] = &[290.0, 288.15, 217.0, 270.0, 20.0];
     let pressure: &[f64] = &[1.1e5, 1e5, 1.9e4, 80.0, 0.2];
     let table = |density: &[f64]| Arc::new(Table::new(&altitude, density, Some(temperature), Some(pressure)).unwrap());
+    let plain = || Table::new(&altitude, &density, Some(temperature), Some(pressure)).unwrap();
+    let [molar_mass, heat_capacity_ratio]: [&[f64]; 2] =
+        [&[0.029, 0.03, 0.044, 0.02, 0.002], &[1.4, 1.3, 1.28, 1.4, 1.66]];
+    let gas = plain().with_gas(&altitude, Gas::ByAltitude { molar_mass, heat_capacity_ratio }).unwrap();
+    let sound = plain().with_speed_of_sound(&altitude, &[340.0, 341.0, 295.0, 330.0, 20.0]).unwrap();
     let layers = vec![
         Layer { base_altitude: 0.0, density: 1.2, scale_height: 8e3 },
         Layer { base_altitude: 30e3, density: 0.02, scale_height: 6e3 },
@@ -444,10 +449,12 @@ fn models() -> Vec<(Atmosphere, usize)> {
     vec![
         (Atmosphere::Vacuum, 1),
         (Atmosphere::EARTH_JAMESON, 1),
-        (Atmosphere::Us76, 17),
+        (Atmosphere::Us76, 18),
         (Atmosphere::Layers(Arc::new(Layers::new(layers).unwrap())), 3),
         (Atmosphere::Layers(Arc::new(Layers::earth_seven_layer())), 7),
         (Atmosphere::Table(table(&density)), 3),
+        (Atmosphere::Table(Arc::new(gas)), 3),
+        (Atmosphere::Table(Arc::new(sound)), 3),
         // Thicker and thicker air; cliffs.
         (Atmosphere::Table(table(&[1e-300, 1e-200, 1.0, 1e200, 1e300])), 3),
         (Atmosphere::Table(table(&[1e300, 1e300, 1.0, 1.0, 1e-300])), 3),
@@ -480,6 +487,7 @@ fn every_formula_is_finite_at_every_altitude() {
                     let finite = |number: Dual64| number.re.is_finite() && number.eps.is_finite();
                     assert!(air.temperature.is_none_or(finite) && air.pressure.is_none_or(finite), "{}", what());
                     assert_eq!(air.temperature.is_some(), model.has_temperature());
+                    assert_eq!(air.speed_of_sound.is_some(), model.has_speed_of_sound());
                     assert_eq!(air.pressure.is_some(), model.has_pressure());
                     let (density, sound) = model.density_and_sound(stretch, altitude, &hint);
                     let bits = |number: Dual64| [number.re, number.eps].map(f64::to_bits);
@@ -497,7 +505,7 @@ proptest! {
 
     #[test]
     fn every_model_has_the_digits_of_f64_in_lanes_and_its_slope_in_dual_numbers(altitudes in prop::array::uniform8(-2e3..150e3)) {
-        for (model, stretches) in models().into_iter().take(6) {
+        for (model, stretches) in models().into_iter().take(8) {
             for stretch in 0..stretches {
                 let hint = Hint::default();
                 let (density, sound) = model.density_and_sound(stretch, Lanes(altitudes), &hint);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
 const CORE: [&[&str]; 11] = [
-    &["scalar", "root"],
+    &["scalar", "root", "plain"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
     &["event"],

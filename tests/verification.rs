@@ -1,15 +1,17 @@
 //! What `verification` says of a flight is true.
 
+use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
+use reentry::coordinates::{OrbitShape, OrbitalElements};
 use reentry::event::{Condition, Direction, Quantity};
 use reentry::simulate::SimulationError;
 use reentry::verification::{Verification, verify};
-use reentry::{Case, FlightPath, Scenario, Solver, Stop};
+use reentry::{Atmosphere, Case, FlightPath, Scenario, Solver, Stop};
 
 use crate::check::{near, relative};
-use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
+use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, vehicle, with_tolerance};
 
 fn verified(case: &Case) -> Verification {
     verify(&Scenario::new(case.clone()).unwrap(), &fly(case), &AtomicBool::new(false)).unwrap()
@@ -35,6 +37,71 @@ fn the_distance_from_the_finer_flight_is_the_error() {
         1e-14,
         1e-15,
     );
+}
+
+/// A vehicle of 1000 kg and 11 m² of drag area in standard air, from an orbit with these altitudes, m, from its highest place on.
+fn from_orbit(apoapsis: f64, periapsis: f64, lift_coefficient: f64, relative_tolerance: f64) -> Case {
+    let planet = target_2().planet;
+    let [apoapsis, periapsis] = [apoapsis, periapsis].map(|altitude| planet.equatorial_radius() + altitude);
+    let semi_major_axis = 0.5 * (apoapsis + periapsis);
+    let elements = OrbitalElements {
+        shape: OrbitShape::SemiMajorAxis(semi_major_axis),
+        eccentricity: 1.0 - periapsis / semi_major_axis,
+        inclination: 0.9,
+        raan: 0.2,
+        argument_of_periapsis: 0.4,
+        true_anomaly: PI,
+    };
+    let inertial = elements.to_inertial(planet.gravitational_parameter);
+    with_tolerance(
+        Case {
+            atmosphere: Atmosphere::Us76,
+            vehicle: vehicle(1000.0, 5.0, lift_coefficient, 2.2),
+            initial_state: inertial.to_planet_fixed(&planet, 0.0),
+            stop: Stop { time: 1e8, ..Stop::default() },
+            ..target_2()
+        },
+        relative_tolerance,
+    )
+}
+
+/// What the documents say of the default tolerance, and when the answer warns: entries from orbit, ballistic and lifting, and orbits, of up
+/// to two hours.
+#[test]
+fn the_default_tolerance_keeps_two_hours_within_a_metre() {
+    let mut longest = 0.0_f64;
+    for apoapsis in [130e3, 200e3, 300e3, 400e3] {
+        for periapsis in [-40e3, 0.0, 40e3, 70e3, 85e3, 130e3] {
+            for lift_coefficient in [0.0, 0.4] {
+                let case = from_orbit(apoapsis, periapsis, lift_coefficient, Solver::default().relative_tolerance);
+                let case = Case { stop: Stop { time: 7200.0, ..Stop::default() }, ..case };
+                let Verification { distance, .. } = verified(&case);
+                assert!(distance < 1.0, "{distance} m from {apoapsis} and {periapsis} m");
+                longest = longest.max(fly(&case).end_time());
+            }
+        }
+    }
+    near("some last that long", longest, 7200.0, 0.0);
+}
+
+/// Errors grow with the days of a decay, and fall with the tolerance: metres, as documented, to a factor of 4.
+#[test]
+fn the_end_of_a_decay_is_as_exact_as_documented() {
+    for (altitude, days, relative_tolerance, error) in [
+        (160e3, 0.44, 1e-10, 2.0),
+        (200e3, 2.7, 1e-10, 10.0),
+        (220e3, 5.7, 1e-10, 60.0),
+        (220e3, 5.7, 1e-12, 0.25),
+        (240e3, 11.0, 1e-12, 1.3),
+    ] {
+        let case = from_orbit(altitude, altitude, 0.0, relative_tolerance);
+        relative("days", fly(&case).end_time() / 86_400.0, days, 0.1);
+        let Verification { distance, .. } = verified(&case);
+        assert!(
+            (0.25 * error..4.0 * error).contains(&distance),
+            "{distance} m after {days} days, {relative_tolerance:e}"
+        );
+    }
 }
 
 #[test]

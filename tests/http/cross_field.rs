@@ -104,12 +104,12 @@ async fn vectors_are_not_longer_than_the_ranges_of_radius_and_speed() {
     for kind in ["ecef", "eci"] {
         let far = with(&state(kind), "/position", json!([8e11, 8e11, 0]));
         let fast = with(&state(kind), "/velocity", json!([8e5, 0, 8e5]));
-        refuses_state(&steady, &fast, &[("", "the speed relative to the rotating planet must be at most")]).await;
+        refuses_state(&steady, &fast, &[("", "speed relative to the rotating planet must be at most")]).await;
         // So far out the planet-fixed velocity of an inertial state is large as well.
         if kind == "ecef" {
-            refuses_state(&steady, &far, &[("", "the distance from the planet's centre must be at most")]).await;
+            refuses_state(&steady, &far, &[("", "distance from the planet's centre must be at most")]).await;
             let both = with(&far, "/velocity", json!([8e5, 0, 8e5]));
-            refuses_state(&steady, &both, &[("", "the distance from"), ("", "the speed relative to")]).await;
+            refuses_state(&steady, &both, &[("", "distance from"), ("", "speed relative to")]).await;
         }
     }
 }
@@ -129,12 +129,12 @@ async fn the_range_of_speed_is_that_relative_to_the_planet_however_the_velocity_
         if within {
             good_answer(&steady.service, "/convert", &json!({"state": state})).await;
         } else {
-            refuses_state(&steady, &state, &[("", "the speed relative to the rotating planet must be at most")]).await;
+            refuses_state(&steady, &state, &[("", "speed relative to the rotating planet must be at most")]).await;
         }
     }
     // The planet-fixed velocity of something that stands still far out.
     let far = with_all(&state, [("/altitude", json!(1e11)), ("/inertial_speed", json!(0))]);
-    refuses_state(&steady, &far, &[("", "the speed relative to the rotating planet must be at most")]).await;
+    refuses_state(&steady, &far, &[("", "speed relative to the rotating planet must be at most")]).await;
 }
 
 #[tokio::test]
@@ -142,7 +142,9 @@ async fn a_flight_starts_on_or_above_its_stop_altitude() {
     let steady = Steady::new().await;
     for stop in [120_000.01, 2e5, 1e12] {
         let request = with(&capsule(), "/stop", json!({"altitude": stop}));
-        steady.refused_at("/simulate", &request, &[("/initial_state", "lies below the stop altitude")]).await;
+        steady
+            .refused_at("/simulate", &request, &[("/initial_state", "initial altitude is below the stop altitude")])
+            .await;
     }
 }
 
@@ -247,7 +249,7 @@ async fn csv_without_a_trajectory_is_reported_beside_other_faults() {
     let steady = Steady::new().await;
     let request =
         with_all(&capsule(), [("/output", json!({"trajectory": false})), ("/stop", json!({"altitude": 2e5}))]);
-    let expected = [("/output/trajectory", "CSV"), ("/initial_state", "lies below the stop altitude")];
+    let expected = [("/output/trajectory", "CSV"), ("/initial_state", "initial altitude is below the stop altitude")];
     steady.refused_at("/simulate?format=csv", &request, &expected).await;
 }
 

@@ -58,7 +58,7 @@ async fn time_never_falls() {
         &capsule(),
         [("/events", json!([then(&json!({})), {"when": falls}])), ("/stop", json!({"when": [falls]}))],
     );
-    let phrase = "is not for time, which never falls; use rises_through";
+    let phrase = "is not for time, which never falls: use rises_through";
     let expected = [("/events/1/when/falls_through", phrase), ("/stop/when/0/falls_through", phrase)];
     steady.refused_at("/simulate", &request, &expected).await;
 }
@@ -79,7 +79,8 @@ async fn conditions_and_coefficients_by_mach_number_need_a_temperature() {
                     ("/stop", json!({"when": [speed, mach]})),
                 ],
             );
-            let phrase = "needs a Mach number, and with it an atmosphere that has a temperature";
+            let phrase =
+                "needs a Mach number: the atmosphere must be us76, or a table with temperature or speed_of_sound";
             let pointers = ["/events/0/when/quantity", "/events/1/then/aerodynamics/type", "/stop/when/1/quantity"];
             steady.refused_at("/simulate", &request, &pointers.map(|pointer| (pointer, phrase))).await;
             good_answer(&steady.service, "/simulate", &with(&request, "/atmosphere", json!({"type": "us76"}))).await;
@@ -92,7 +93,7 @@ async fn the_ceiling_lies_above_the_stop_altitude() {
     let steady = Steady::new().await;
     for (altitude, ceiling) in [(0.0, 0.0), (0.0, -5.0), (5000.0, 5000.0), (5000.0, 4999.0), (-10.0, -1e12)] {
         let stop = json!({"altitude": altitude, "ceiling": ceiling});
-        let phrase = format!("must be greater than the stop altitude of {altitude} m, got ");
+        let phrase = format!("must be greater than the stop altitude, {altitude} m, got ");
         steady.refused_at("/simulate", &with(&capsule(), "/stop", stop), &[("/stop/ceiling", &phrase)]).await;
         let stop = json!({"altitude": altitude, "ceiling": f64::next_up(altitude)});
         good_answer(&steady.service, "/simulate", &with(&capsule(), "/stop", stop)).await;
@@ -103,7 +104,8 @@ async fn the_ceiling_lies_above_the_stop_altitude() {
 async fn heating_wants_a_nose_and_an_emissivity_within_1() {
     let steady = Steady::new().await;
     let request = with(&capsule(), "/heating", json!({}));
-    let expected = [("/vehicle/nose_radius", "is required: the heat flux at the stagnation point depends on it")];
+    let expected =
+        [("/vehicle/nose_radius", "is required for heating: the heat flux at the stagnation point depends on it")];
     steady.refused_at("/simulate", &request, &expected).await;
     // A nose without heating is a part of the vehicle like others.
     good_answer(&steady.service, "/simulate", &with(&capsule(), "/vehicle/nose_radius", 2)).await;
@@ -172,9 +174,9 @@ async fn thresholds_of_the_flight_path_angle_are_in_the_unit_of_the_request() {
         };
         let pointers = [format!("/events/0/when/{way}"), format!("/stop/when/0/{way}")];
         let expected = |phrase| pointers.each_ref().map(|pointer| (pointer.as_str(), phrase));
-        let phrase = "got -3.0 (radians); were degrees meant? Then send \"angle_unit\": \"deg\"";
+        let phrase = "got -3 (radians); were degrees meant? Then send \"angle_unit\": \"deg\"";
         steady.refused_at("/simulate", &request(&capsule(), -3.0), &expected(phrase)).await;
-        let phrase = "must be between -90 and 90, got -91.0 (degrees)";
+        let phrase = "must be between -90 and 90, got -91 (degrees)";
         steady.refused_at("/simulate", &request(&in_degrees, -91.0), &expected(phrase)).await;
         for limit in [-1.0, 1.0] {
             good_answer(&steady.service, "/simulate", &request(&capsule(), limit * FRAC_PI_2)).await;
@@ -376,7 +378,7 @@ async fn columns_of_heating_and_mass_are_there_where_the_case_has_them() {
 async fn a_theory_knows_neither_events_nor_heating() {
     let steady = Steady::new().await;
     let theory = with(&flight("geodetic"), "/solution", "loh");
-    let heating = ("/heating", "must be left out: the theories know no heating");
+    let heating = ("/heating", "must not be given: the theories know no heating");
     let events = ("/events", "must be left out: the theory knows one vehicle, without thrust");
     let mark = json!([then(&json!({}))]);
     steady.refused_at("/analytic", &with(&theory, "/heating", json!({})), &[heating]).await;

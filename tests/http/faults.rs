@@ -38,9 +38,10 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
             };
             let expected = match field.kind {
                 Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) => "must be a number",
+                Kind::NumberOrNumbers(_) => "must be a number or an array of numbers",
                 Kind::Thrust => "must be \"off\" or an object",
                 Kind::Whole => "must be a whole number",
-                Kind::Name | Kind::Along => "must be one of ",
+                Kind::Name | Kind::NameOrObject => "must be one of ",
                 Kind::Text => "must be a string",
                 Kind::Boolean => "must be true or false",
                 Kind::False => "must be false",
@@ -123,7 +124,8 @@ const WRONG_NAMES: [&str; 7] = ["", "ECI", "eci ", "constant_", "orbital-element
 #[tokio::test]
 async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
     let steady = Steady::new().await;
-    let named: Vec<_> = fields().into_iter().filter(|field| matches!(field.kind, Kind::Name | Kind::Along)).collect();
+    let named = fields().into_iter().filter(|field| matches!(field.kind, Kind::Name | Kind::NameOrObject));
+    let named: Vec<_> = named.collect();
     for field in &named {
         for name in WRONG_NAMES {
             let request = with(&field.request, &field.pointer, name);
@@ -142,6 +144,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                     "must be one of constant, ballistic, mach_table, alpha_mach_table, got "
                 }
                 "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
+                "/heating/convective/type" => "must be one of sutton_graves, got ",
                 "/heating/radiative" => "must be one of none, tauber_sutton, got ",
                 "/events/0/when/quantity" | "/stop/when/0/quantity" => {
                     "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, mass, "

@@ -39,8 +39,10 @@ pub(crate) enum Kind {
     Command(Range),
     /// An object with a thrust, or `"off"`.
     Thrust,
-    /// One of some names, or an object with an inertial direction.
-    Along,
+    /// One of some names, or an object.
+    NameOrObject,
+    /// A number, or one for each entry of a table.
+    NumberOrNumbers(Range),
     /// A whole number.
     Whole,
     /// One of some names.
@@ -84,8 +86,8 @@ pub(crate) enum Limit {
 }
 
 use Kind::{
-    Along, Angle, Boolean, Command, False, Instant, Matrix, Name, Names, Number, Numbers, Object, Objects,
-    SiderealTime, Text, Texts, Thrust, Vector, Whole,
+    Angle, Boolean, Command, False, Instant, Matrix, Name, NameOrObject, Names, Number, NumberOrNumbers, Numbers,
+    Object, Objects, SiderealTime, Text, Texts, Thrust, Vector, Whole,
 };
 use Limit::{Closed, Open, Unlimited};
 use Need::{Alternative, Optional, Required};
@@ -108,6 +110,9 @@ const SPECIFIC_IMPULSE: Range = between(1e-3, 1e9);
 const DRAG_AREA: Range = between(0.0, 1e9);
 const EMISSIVITY: Range = Range { low: Open(0.0), high: Closed(1.0) };
 const WIND: Range = between(-1e4, 1e4);
+const WIND_SPEED: Range = between(0.0, 1e4);
+const HEAT_CAPACITY_RATIO: Range = between(1.0, 2.0);
+const MOLAR_MASS: Range = between(1e-6, 1.0);
 const COEFFICIENT: Range = between(-0.1, 0.1);
 
 const fn between(low: f64, high: f64) -> Range {
@@ -187,9 +192,24 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
                 ("/pressure", Optional, Numbers),
             ],
         ),
+        "table of a gas" => (
+            "/atmosphere",
+            &[
+                ("/temperature", Required, Numbers),
+                ("/molar_mass", Required, NumberOrNumbers(MOLAR_MASS)),
+                ("/heat_capacity_ratio", Required, NumberOrNumbers(HEAT_CAPACITY_RATIO)),
+            ],
+        ),
+        "table of sound" => ("/atmosphere", &[("/speed_of_sound", Optional, Numbers)]),
         "table of wind" => {
             ("/wind", &[("/altitude", Required, Numbers), ("/east", Required, Numbers), ("/north", Required, Numbers)])
         }
+        "wind from" => ("/wind", &[("/speed", Required, Number(WIND_SPEED)), ("/from", Required, Angle(TURN))]),
+        "table of wind from" => ("/wind", &[("/speed", Required, Numbers), ("/from", Required, Numbers)]),
+        "heating of a gas" => (
+            "/heating/convective",
+            &[("", Optional, NameOrObject), ("/type", Required, Name), ("/constant", Required, Number(POSITIVE))],
+        ),
         "zonal" => {
             ("/planet/gravity", &[("/j3", Required, Number(COEFFICIENT)), ("/j4", Required, Number(COEFFICIENT))])
         }
@@ -229,7 +249,7 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
             "/heating",
             &[
                 ("", Optional, Object),
-                ("/convective", Optional, Name),
+                ("/convective", Optional, NameOrObject),
                 ("/radiative", Optional, Name),
                 ("/emissivity", Optional, Number(EMISSIVITY)),
             ],
@@ -257,10 +277,10 @@ const EVENT: [Row; 19] = [
     ("/0/then/aerodynamics/lift_coefficient", Optional, Number(FINITE)),
     ("/0/then/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
     ("/0/then/delta_v", Optional, Object),
-    ("/0/then/delta_v/along", Required, Along),
+    ("/0/then/delta_v/along", Required, NameOrObject),
     ("/0/then/delta_v/value", Required, Number(VELOCITY)),
     ("/0/then/thrust", Optional, Thrust),
-    ("/0/then/thrust/along", Required, Along),
+    ("/0/then/thrust/along", Required, NameOrObject),
     ("/0/then/thrust/value", Required, Number(FORCE)),
     // Propellant needs it.
     ("/0/then/thrust/specific_impulse", Alternative, Number(SPECIFIC_IMPULSE)),
@@ -269,7 +289,7 @@ const EVENT: [Row; 19] = [
 
 /// A thrust in inertial space that burns no mass.
 const THRUST: [Row; 4] = [
-    ("/along", Required, Along),
+    ("/along", Required, NameOrObject),
     ("/along/frame", Required, Name),
     ("/along/direction", Required, Vector),
     ("/specific_impulse", Optional, Number(SPECIFIC_IMPULSE)),
@@ -426,7 +446,7 @@ impl Kind {
     /// Values of types that the field does not hold.
     pub(crate) fn mistyped(self) -> Vec<Value> {
         let mut wrong = vec![json!(null)];
-        let number = matches!(self, Number(_) | Angle(_) | Command(_) | Whole | SiderealTime);
+        let number = matches!(self, Number(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime);
         if !number {
             wrong.push(json!(13));
         }
@@ -439,10 +459,10 @@ impl Kind {
         if !matches!(self, Boolean | False) {
             wrong.push(json!(false));
         }
-        if !matches!(self, Vector | Numbers | Matrix | Names | Texts | Objects) {
+        if !matches!(self, Vector | Numbers | NumberOrNumbers(_) | Matrix | Names | Texts | Objects) {
             wrong.push(json!([1, 2, 3]));
         }
-        if !matches!(self, Object | Command(_) | Thrust | Along) {
+        if !matches!(self, Object | Command(_) | Thrust | NameOrObject) {
             wrong.push(json!({"value": 1}));
         }
         wrong

@@ -96,8 +96,8 @@ async fn an_invalid_case_gets_its_problem() {
             {"pointer": "/vehicle/mass", "detail": "must be greater than 0, got -13"},
             {"pointer": "/vehicle/colour",
                 "detail": "is not a field here; the fields are mass, reference_area, aerodynamics, nose_radius"},
-            {"pointer": "/initial_state/heading", "detail": "must be between -6.283185307179586 and \
-                6.283185307179586, got 30 (radians); were degrees meant? Then send \"angle_unit\": \"deg\""},
+            {"pointer": "/initial_state/heading", "detail": "must be between -6.28319 and \
+                6.28319, got 30 (radians); were degrees meant? Then send \"angle_unit\": \"deg\""},
         ],
     });
     assert_eq!(steady.refused(post_json("/simulate", &request)).await, expected);

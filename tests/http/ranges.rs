@@ -16,7 +16,7 @@ fn numbers() -> Vec<(Field, Range)> {
     let mut numbers = Vec::new();
     for mut field in fields() {
         match field.kind {
-            Kind::Number(range) => numbers.push((field, range)),
+            Kind::Number(range) | Kind::NumberOrNumbers(range) => numbers.push((field, range)),
             Kind::Angle(range) | Kind::Command(range) => {
                 field.request = with(&field.request, "/angle_unit", "deg");
                 numbers.push((field, range.in_degrees()));
@@ -30,6 +30,19 @@ fn numbers() -> Vec<(Field, Range)> {
     };
     numbers.extend(fields().into_iter().filter_map(radians));
     numbers
+}
+
+/// Whether a field may hold a number.
+fn is_number(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Number(_)
+            | Kind::NumberOrNumbers(_)
+            | Kind::Angle(_)
+            | Kind::Command(_)
+            | Kind::SiderealTime
+            | Kind::Whole
+    )
 }
 
 #[tokio::test]
@@ -135,8 +148,7 @@ async fn huge_and_tiny_numbers_give_an_answer_or_a_refusal() {
     values.extend(values.clone().into_iter().map(|value| -value));
     let mut failures = Vec::new();
     for field in fields() {
-        if matches!(field.kind, Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) | Kind::SiderealTime | Kind::Whole)
-        {
+        if is_number(field.kind) {
             for value in &values {
                 let answer = service.post(field.path, &with(&field.request, &field.pointer, *value)).await;
                 let what = format!("{} {} {value:e}", field.path, field.pointer);
@@ -176,8 +188,7 @@ async fn numbers_that_no_f64_holds_are_not_json() {
     let steady = Steady::new().await;
     let digits = "9".repeat(400);
     for field in fields() {
-        if matches!(field.kind, Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) | Kind::Whole | Kind::SiderealTime)
-        {
+        if is_number(field.kind) {
             let text = with(&field.request, &field.pointer, "HERE").to_string();
             for number in ["1e999", "-1e999", &digits] {
                 let problem = steady.refused_text(field.path, text.replace("\"HERE\"", number)).await;

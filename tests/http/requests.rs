@@ -107,6 +107,33 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             ),
         ),
         (
+            "table of a gas",
+            with(
+                &flight(),
+                "/atmosphere",
+                json!({"type": "table", "altitude": [0, 5e4, 1e5], "density": [0.02, 3e-4, 3e-7],
+                "temperature": [240, 140, 120], "molar_mass": 0.04401, "heat_capacity_ratio": [1.28, 1.35, 1.37]}),
+            ),
+        ),
+        (
+            "table of sound",
+            with(
+                &flight(),
+                "/atmosphere",
+                json!({"type": "table", "altitude": [0, 5e4, 1e5], "density": [1.2, 1e-3, 6e-7],
+                "speed_of_sound": [340, 330, 284]}),
+            ),
+        ),
+        ("wind from", with(&flight(), "/wind", json!({"type": "constant", "speed": 13, "from": 4.3}))),
+        (
+            "table of wind from",
+            with(&flight(), "/wind", json!({"type": "table", "altitude": [0, 1e4], "speed": [5, 30], "from": [0, 5]})),
+        ),
+        (
+            "heating of a gas",
+            with(&flight(), "/heating", json!({"convective": {"type": "sutton_graves", "constant": 1.9e-4}})),
+        ),
+        (
             "table of wind",
             with(&flight(), "/wind", json!({"type": "table", "altitude": [0, 1e4], "east": [5, 30], "north": [0, 5]})),
         ),

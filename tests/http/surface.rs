@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use reentry_tests::fuzzed::is_of_default;
 use serde_json::{Value, json};
 
 use crate::check;
@@ -185,8 +186,9 @@ async fn peaks_at_the_ends_belong_to_the_flight() {
     assert_eq!(answer["peaks"]["dynamic_pressure"]["value"], answer["final_state"]["dynamic_pressure"]);
 }
 
-fn warnings(answer: &Value) -> &Vec<Value> {
-    answer["warnings"].as_array().unwrap()
+fn warnings(answer: &Value) -> Vec<Value> {
+    let warnings = answer["warnings"].as_array().unwrap().iter();
+    warnings.filter(|warning| !is_of_default(warning)).cloned().collect()
 }
 
 #[tokio::test]
@@ -217,6 +219,6 @@ async fn without_lift_or_away_from_the_vertical_nothing_is_warned_of() {
         [("/vehicle/aerodynamics/lift_coefficient", json!(0.4)), ("/stop", json!({"altitude": 60_000}))],
     );
     for case in [vertical, shallow, capsule()] {
-        assert_eq!(*warnings(&fly(&case).await), Vec::<Value>::new());
+        assert_eq!(warnings(&fly(&case).await), Vec::<Value>::new());
     }
 }

@@ -20,6 +20,7 @@ use std::fmt;
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::FlightPath;
 use crate::motion::Parameters;
+use crate::plain::Plain;
 use crate::scenario::Scenario;
 use crate::trajectory::{FlightPoint, Termination};
 use crate::vehicle::{Aerodynamics, Vehicle};
@@ -103,7 +104,7 @@ pub enum Fault {
     #[error("must not be 0: without lift there is no glide")]
     NoLift,
     /// A ballistic flight with lift.
-    #[error("must be 0: the ballistic theory knows no lift, got {lift_coefficient}")]
+    #[error("must be 0: the ballistic theory knows no lift, got {}", Plain(*.lift_coefficient))]
     Lift {
         /// `C_L`.
         lift_coefficient: f64,

@@ -5,7 +5,7 @@ mod table;
 pub mod us76;
 
 pub use layers::{Layer, Layers};
-pub use table::Table;
+pub use table::{Gas, MOLAR_GAS_CONSTANT, Table};
 
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ pub struct AtmosphereSample<S> {
     pub temperature: Option<S>,
     /// Pa, if the model has one.
     pub pressure: Option<S>,
-    /// m/s, if the model has a temperature.
+    /// m/s, if the model has one.
     pub speed_of_sound: Option<S>,
 }
 
@@ -95,14 +95,14 @@ impl Atmosphere {
         }
     }
 
-    /// Density, kg/m³, and speed of sound, m/s, at an altitude, m, by the formulas of a stretch; of a model that has no temperature the
-    /// speed of sound is 1 m/s.
+    /// Density, kg/m³, and speed of sound, m/s, at an altitude, m, by the formulas of a stretch; of a model that has no speed of sound
+    /// it is 1 m/s.
     #[inline(never)]
     pub fn density_and_sound<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> (S, S) {
         match self {
             Self::Us76 => us76::density_and_sound_in(stretch, altitude),
             Self::Table(table) => {
-                let sound = table.temperature(stretch, altitude, hint).map(us76::speed_of_sound);
+                let sound = table.speed_of_sound(stretch, altitude, hint);
                 (table.density(stretch, altitude, hint), sound.unwrap_or_else(S::one))
             }
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => {
@@ -125,7 +125,16 @@ impl Atmosphere {
         }
     }
 
-    /// Whether the model has a temperature, and with it a speed of sound.
+    /// Whether the model has a speed of sound, and with it flights have a Mach number.
+    pub fn has_speed_of_sound(&self) -> bool {
+        match self {
+            Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,
+            Self::Us76 => true,
+            Self::Table(table) => table.has_speed_of_sound(),
+        }
+    }
+
+    /// Whether the model has a temperature.
     pub fn has_temperature(&self) -> bool {
         match self {
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,

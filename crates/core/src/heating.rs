@@ -1,6 +1,6 @@
 //! Heating of the stagnation point of a blunt nose: correlations of the heat flux with density, speed and nose radius.
 //!
-//! All are of the Earth's air in equilibrium, of a laminar continuum, and of a wall that is cold, and fully catalytic: in
+//! All are of the Earth's air in equilibrium, but [`sutton_graves`] with the constant of another gas; of a laminar continuum, and of a wall that is cold, and fully catalytic: in
 //! free-molecular flow, above some 90 km, they give too much, which hardly matters to the heat load; a hot wall takes less than they say, by
 //! the ratio of the enthalpies. The heat load is the integral of both fluxes; the wall temperature is that at which a wall radiates as
 //! much as it gets, and knows no conduction.
@@ -24,10 +24,13 @@ pub struct Heating {
 }
 
 /// Correlations of the convective flux.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Convective {
     /// [`sutton_graves`].
-    SuttonGraves,
+    SuttonGraves {
+        /// k, √kg/m; of air [`SUTTON_GRAVES_AIR`].
+        constant: f64,
+    },
     /// [`detra_kemp_riddell`].
     DetraKempRiddell,
     /// [`chapman`].
@@ -82,7 +85,7 @@ impl Stagnation {
     #[inline(always)]
     pub fn heat_flux<S: Scalar>(&self, stretch: usize, density: S, air_speed: S) -> HeatFlux<S> {
         let convective = match self.heating.convective {
-            Convective::SuttonGraves => sutton_graves(density, air_speed, self.nose_radius),
+            Convective::SuttonGraves { constant } => sutton_graves(constant, density, air_speed, self.nose_radius),
             Convective::DetraKempRiddell => detra_kemp_riddell(density, air_speed, self.nose_radius),
             Convective::Chapman => chapman(density, air_speed, self.nose_radius),
         };
@@ -115,20 +118,24 @@ impl Stagnation {
 /// σ, W/(m² K⁴). CODATA 2018.
 pub const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 
+/// k of air in [`sutton_graves`], √kg/m.
+pub const SUTTON_GRAVES_AIR: f64 = 1.7415e-4;
+
 /// The convective flux by Sutton and Graves, W/m².
 ///
 /// ```text
-/// q̇ = k √(ρ/r_n) V³,   k = 1.7415e-4 √kg/m
+/// q̇ = k √(ρ/r_n) V³,   in air k = 1.7415e-4 √kg/m
 /// ```
 ///
 /// | symbol | argument      | unit  |
 /// |--------|---------------|-------|
+/// | k      | `constant`    | √kg/m |
 /// | ρ      | `density`     | kg/m³ |
 /// | V      | `speed`       | m/s   |
 /// | `r_n`  | `nose_radius` | m     |
 ///
 /// The report has `K √(p_s/r_n) (h_s - h_w)`, with K = 0.1113 kg/(s m^1.5 atm^0.5) for air; with `p_s` = ρV², `h_s` = V²/2 and a cold wall
-/// that makes 1.748e-4, of which 1.7415e-4 is the customary rounding. Its average error against the solutions behind it is 3.3 %.
+/// that makes 1.748e-4, of which 1.7415e-4 is the customary rounding. Other gases have other constants in its table II. Its average error against the solutions behind it is 3.3 %.
 /// Valid for stagnation enthalpies from 2.3 to 116.2 MJ/kg and pressures from 0.001 to 100 atm ([`Range`]).
 ///
 /// # Reference
@@ -138,12 +145,14 @@ pub const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
 /// # Examples
 /// ```
 /// // The course's own example: 13.6 W/cm².
-/// let flux = reentry::heating::sutton_graves(3.1459e-4_f64, 3535.0, 1.0);
+/// use reentry::heating::{SUTTON_GRAVES_AIR, sutton_graves};
+///
+/// let flux = sutton_graves(SUTTON_GRAVES_AIR, 3.1459e-4_f64, 3535.0, 1.0);
 /// assert!((flux - 13.6e4).abs() < 0.05e4);
 /// ```
 #[inline(always)]
-pub fn sutton_graves<S: Scalar>(density: S, speed: S, nose_radius: f64) -> S {
-    (density / nose_radius).sqrt() * (speed * speed * speed) * 1.7415e-4
+pub fn sutton_graves<S: Scalar>(constant: f64, density: S, speed: S, nose_radius: f64) -> S {
+    (density / nose_radius).sqrt() * (speed * speed * speed) * constant
 }
 
 /// The convective flux by Detra, Kemp and Riddell, W/m².
@@ -284,17 +293,20 @@ impl Range {
 }
 
 impl Convective {
+    /// [`sutton_graves`] in air.
+    pub const SUTTON_GRAVES: Self = Self::SuttonGraves { constant: SUTTON_GRAVES_AIR };
+
     /// For what it was made: the enthalpies of Sutton and Graves are speeds of √(2h).
     pub fn range(self) -> Range {
         match self {
-            Self::SuttonGraves => Range {
-                correlation: "the relation of Sutton and Graves",
+            Self::SuttonGraves { .. } => Range {
+                correlation: "Relation of Sutton and Graves",
                 speed: [2145.0, 15_245.0],
                 pressure: [101.325, 1.013_25e7],
                 ..Range::ANY
             },
             Self::DetraKempRiddell => {
-                Range { correlation: "the relation of Detra, Kemp and Riddell", speed: [0.0, 8000.0], ..Range::ANY }
+                Range { correlation: "Relation of Detra, Kemp and Riddell", speed: [0.0, 8000.0], ..Range::ANY }
             }
             Self::Chapman => Range { correlation: "Chapman's relation", speed: [0.0, 11_200.0], ..Range::ANY },
         }
@@ -307,7 +319,7 @@ impl Radiative {
         match self {
             Self::None => Range::ANY,
             Self::TauberSutton => Range {
-                correlation: "the relation of Tauber and Sutton",
+                correlation: "Relation of Tauber and Sutton",
                 speed: [10_000.0, 16_000.0],
                 density: [6.66e-5, 6.31e-4],
                 nose_radius: [0.3, 3.0],

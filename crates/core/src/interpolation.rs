@@ -68,7 +68,7 @@ pub enum TableError {
         index: usize,
     },
     /// Neighbouring entries so unlike, or so near, that no number holds the slope between them.
-    #[error("must not be so steep as after entry {index}")]
+    #[error("is too steep after entry {index}")]
     TooSteep {
         /// Of the first of two neighbours along the abscissae.
         index: usize,

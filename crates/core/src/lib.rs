@@ -80,6 +80,7 @@ pub mod coordinates;
 
 pub mod integrate;
 pub mod interpolation;
+pub mod plain;
 pub mod root;
 pub mod scalar;
 

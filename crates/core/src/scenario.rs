@@ -9,7 +9,6 @@ pub use phase::Phase;
 use bounds::out_of_bounds;
 
 use std::borrow::Cow;
-use std::fmt;
 
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
@@ -17,25 +16,10 @@ use crate::coordinates::{GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
+use crate::plain::apart;
 use crate::planet::Planet;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
-
-/// A number as people write it: with an exponent where the digits would not fit.
-pub(crate) struct Plain(pub(crate) f64);
-
-impl fmt::Display for Plain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let magnitude = self.0.abs();
-        if !magnitude.is_finite() {
-            write!(f, "more than any number")
-        } else if magnitude != 0.0 && !(1e-4..1e7).contains(&magnitude) {
-            write!(f, "{:e}", self.0)
-        } else {
-            write!(f, "{}", self.0)
-        }
-    }
-}
 
 /// When a flight ends: with the first of these.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,7 +113,7 @@ pub struct Scenario {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A number out of its bounds.
-    #[error("{field} must be {bound}, got {value}")]
+    #[error("{field} {}", .bound.refusal(*.value))]
     OutOfBounds {
         /// Its place in the [`Case`].
         field: Cow<'static, str>,
@@ -139,7 +123,7 @@ pub enum Fault {
         bound: Bound,
     },
     /// The planet is too flat or too long.
-    #[error("must be between 0.1 and 10 times the equatorial radius of {equatorial_radius} m, got {polar_radius}")]
+    #[error("{}", odd_shape(*.equatorial_radius, *.polar_radius))]
     OddShape {
         /// m.
         equatorial_radius: f64,
@@ -147,7 +131,7 @@ pub enum Fault {
         polar_radius: f64,
     },
     /// The altitude that ends the flight lies at the planet's centre or beyond.
-    #[error("must be greater than {minimum} m, the altitude of the planet's centre, got {altitude}")]
+    #[error("must be greater than {}", apart([*.minimum, *.altitude]).join(" m, the altitude of the planet's centre, got "))]
     StopBelowCentre {
         /// The stop altitude, m.
         altitude: f64,
@@ -155,22 +139,22 @@ pub enum Fault {
         minimum: f64,
     },
     /// The position is the planet's centre, or nearer than a millimetre.
-    #[error("the position is the planet's centre, where gravity has no direction")]
+    #[error("position is the planet's centre, where gravity has no direction")]
     AtCentre,
     /// The position is too far away.
-    #[error("the distance from the planet's centre must be at most {} m, got {}", Plain(Bound::RADIUS.maximum), Plain(*.distance))]
+    #[error("distance from the planet's centre must be at most {}", apart([Bound::RADIUS.maximum, *.distance]).join(" m, got "))]
     TooFar {
         /// From the planet's centre, m.
         distance: f64,
     },
     /// The motion is too fast.
-    #[error("the speed relative to the rotating planet must be at most {} m/s, got {}", Plain(Bound::SPEED.maximum), Plain(*.speed))]
+    #[error("speed relative to the rotating planet must be at most {}", apart([Bound::SPEED.maximum, *.speed]).join(" m/s, got "))]
     TooFast {
         /// Relative to the rotating planet, m/s.
         speed: f64,
     },
     /// The initial position lies below the altitude at which the flight would end.
-    #[error("the initial altitude of {altitude} m lies below the stop altitude of {stop} m")]
+    #[error("initial altitude is below the stop altitude: {}", apart([*.altitude, *.stop]).join(" m is less than ") + " m")]
     BelowStopAltitude {
         /// The initial altitude, m.
         altitude: f64,
@@ -178,13 +162,13 @@ pub enum Fault {
         stop: f64,
     },
     /// Something needs a Mach number under an atmosphere that has none.
-    #[error("needs a Mach number, and with it an atmosphere that has a temperature: us76, or a table with one")]
+    #[error("needs a Mach number: the atmosphere must be us76, or a table with temperature or speed_of_sound")]
     NoTemperature {
         /// What needs it: its place in the [`Case`].
         field: Cow<'static, str>,
     },
     /// Time never falls.
-    #[error("is not for time, which never falls; use rises_through")]
+    #[error("is not for time, which never falls: use rises_through")]
     TimeFalls {
         /// The place of the condition in the [`Case`].
         field: String,
@@ -204,7 +188,7 @@ pub enum Fault {
         event: usize,
     },
     /// The ceiling lies on the stop altitude or below.
-    #[error("must be greater than the stop altitude of {altitude} m, got {ceiling}")]
+    #[error("must be greater than the stop altitude, {}", apart([*.altitude, *.ceiling]).join(" m, got "))]
     LowCeiling {
         /// m.
         ceiling: f64,
@@ -238,11 +222,16 @@ pub enum Fault {
         field: String,
     },
     /// Heating without a nose.
-    #[error("is required: the heat flux at the stagnation point depends on it")]
+    #[error("is required for heating: the heat flux at the stagnation point depends on it")]
     NoNoseRadius,
     /// The initial acceleration overflows.
-    #[error("the initial acceleration is not a finite number")]
+    #[error("initial acceleration is not a finite number")]
     InfiniteAcceleration,
+}
+
+fn odd_shape(equatorial_radius: f64, polar_radius: f64) -> String {
+    let [least, greatest, got] = apart([0.1 * equatorial_radius, 10.0 * equatorial_radius, polar_radius]);
+    format!("must be between {least} and {greatest} m, 0.1 and 10 times the equatorial radius, got {got}")
 }
 
 /// Everything that is wrong with a case.
@@ -426,7 +415,7 @@ impl Case {
 
     /// What needs a Mach number where there is none.
     fn mach_faults(&self) -> Vec<Fault> {
-        if self.atmosphere.has_temperature() {
+        if self.atmosphere.has_speed_of_sound() {
             return Vec::new();
         }
         let Control { bank_angle, angle_of_attack } = &self.control;

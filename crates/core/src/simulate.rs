@@ -14,7 +14,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::integrate::Step;
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
-use crate::scenario::{Equations, Phase, Plain, Scenario};
+use crate::plain::Plain;
+use crate::scenario::{Equations, Phase, Scenario};
 use crate::trajectory::{Arrival, Flown, Leg, LegStep, Trajectory};
 use extremes::Extremes;
 use flight::{Flight, Log};

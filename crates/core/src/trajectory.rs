@@ -119,7 +119,7 @@ pub enum Warning {
         /// At the end of a step, s.
         time: f64,
     },
-    /// From this time on a table was asked for more than it holds, and gave what it has at its edge.
+    /// From this time on a table, or a model of a given range, was asked for more than it holds, and gave what it has at its edge.
     OutsideTable {
         /// Which.
         table: Lookup,

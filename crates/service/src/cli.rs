@@ -98,9 +98,10 @@ const SIMULATE_EXAMPLES: &str = r#"Examples:
   reentry simulate - < case.json | jq .final_state
   reentry simulate cases.json > answers.ndjson
   reentry simulate - --format csv <<'END'
-  {"vehicle": {"mass": 5500, "reference_area": 12, "aerodynamics": {"type": "constant", "drag_coefficient": 1.3}},
-   "initial_state": {"type": "planet_relative", "altitude": 120000, "longitude": 0, "geocentric_latitude": 0.2,
-     "speed": 7500, "flight_path_angle": -0.05, "heading": 0.5}}
+  {"angle_unit": "deg", "atmosphere": {"type": "us76"},
+   "vehicle": {"mass": 5500, "reference_area": 12, "aerodynamics": {"type": "constant", "drag_coefficient": 1.3}},
+   "initial_state": {"type": "planet_relative", "altitude": 120000, "longitude": 0, "geocentric_latitude": 10,
+     "speed": 7500, "flight_path_angle": -3, "heading": 30}}
   END
 
 A list of cases, a JSON array, gives a line of JSON a case, in order. A case that fails has its problem document there and on

@@ -11,7 +11,7 @@ use crate::wire::batch::MOST_CASES;
 use crate::wire::columns::COLUMNS;
 use crate::wire::epoch::RFC3339_PATTERN;
 use crate::wire::events::QUANTITIES;
-use crate::wire::reader::MOST_COLUMNS;
+use crate::wire::reader::{MOST_COLUMNS, MOST_ENTRIES};
 use crate::wire::scenario::Output;
 
 /// The frame of the document; the router adds the paths.
@@ -40,6 +40,8 @@ const ALTERNATIVES: [(&str, &[&str]); 8] = [
     ("InertialFlightPath", &["inertial_heading", "inertial_azimuth"]),
     ("LayeredAtmosphere", &["layers", "preset"]),
     ("Condition", &["quantity", "event"]),
+    ("ConstantWind", &["east", "speed"]),
+    ("TableWind", &["east", "speed"]),
 ];
 
 /// Every failure that every endpoint may answer with.
@@ -198,6 +200,21 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             vec![("dependentSchemas", json!({"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}))]
         }
         "AnalyticRequest" => vec![("dependentSchemas", json!({"solution": theory()}))],
+        "ConstantWind" | "TableWind" => vec![(
+            "dependentRequired",
+            json!({"east": ["north"], "north": ["east"], "speed": ["from"], "from": ["speed"]}),
+        )],
+        "TableAtmosphere" => {
+            let alone =
+                json!({"not": {"anyOf": [{"required": ["molar_mass"]}, {"required": ["heat_capacity_ratio"]}]}});
+            vec![
+                (
+                    "dependentRequired",
+                    json!({"molar_mass": ["heat_capacity_ratio", "temperature"], "heat_capacity_ratio": ["molar_mass"]}),
+                ),
+                ("dependentSchemas", json!({"speed_of_sound": alone})),
+            ]
+        }
         "Effect" => vec![(
             "dependentSchemas",
             json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
@@ -333,6 +350,13 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
     let bounded = |least: f64, greatest: f64| json!({"minimum": least, "maximum": greatest});
     let [distance, wind, turn] = [bounded(-1e12, 1e12), bounded(-1e4, 1e4), bounded(-360.0, 360.0)];
     let [positive, not_negative] = [json!({"exclusiveMinimum": 0}), json!({"minimum": 0})];
+    // Beside a reference to the schema of a number or a list; each keyword is of one of these alone.
+    let number_or_list = |mut bounds: Value| {
+        bounds["items"] = bounds.clone();
+        bounds["minItems"] = json!(2);
+        bounds["maxItems"] = json!(MOST_ENTRIES);
+        bounds
+    };
     let row = |elements: &Value| json!({"minItems": 1, "maxItems": MOST_COLUMNS, "items": elements});
     let refinements = match name {
         "Ecef" | "Eci" => vec![
@@ -355,9 +379,19 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("altitude/items", distance),
             ("density/items", positive.clone()),
             ("temperature/items", positive.clone()),
-            ("pressure/items", positive),
+            ("pressure/items", positive.clone()),
+            ("speed_of_sound/items", positive),
+            ("molar_mass", number_or_list(bounded(1e-6, 1.0))),
+            ("heat_capacity_ratio", number_or_list(bounded(1.0, 2.0))),
         ],
-        "TableWind" => vec![("altitude/items", distance), ("east/items", wind.clone()), ("north/items", wind)],
+        "ConstantWind" => vec![("from", turn)],
+        "TableWind" => vec![
+            ("altitude/items", distance),
+            ("east/items", wind.clone()),
+            ("north/items", wind),
+            ("speed/items", bounded(0.0, 1e4)),
+            ("from/items", turn),
+        ],
         "MachTable" => vec![("mach/items", not_negative.clone()), ("drag_coefficient/items", not_negative)],
         "AlphaMachTable" => vec![
             ("angle_of_attack/items", turn),
@@ -365,6 +399,7 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("lift_coefficient/items", row(&json!({"type": "number"}))),
             ("drag_coefficient/items", row(&json!({"type": "number", "minimum": 0}))),
         ],
+        "SuttonGraves" => vec![("type", json!({"enum": ["sutton_graves"]}))],
         "Schedule" => vec![("type", json!({"enum": ["schedule"]})), ("value/items", turn)],
         // The theories know no events, but an empty list is none.
         "AnalyticRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN})), ("events", json!({"maxItems": 0}))],
@@ -427,7 +462,7 @@ fn add_links(paths: &mut Map<String, Value>) {
         let again = json!({
             "operationId": operation["operationId"],
             "requestBody": "$response.body#/case",
-            "description": "With `echo`: the request with every default filled in has the same answer.",
+            "description": "With `echo`: the request with every default filled in has the same answer, without warnings of what was left out.",
         });
         operation["responses"]["200"]["links"] = json!({"again": again});
     }

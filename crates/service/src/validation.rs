@@ -1,9 +1,9 @@
 //! The reference cases, built into the program and flown as its users fly theirs: what is expected, and what comes out.
 
 pub mod cases;
+pub mod flights;
 pub mod nesc;
 
-mod flights;
 mod frames;
 mod number;
 mod report;

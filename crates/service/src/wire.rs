@@ -27,6 +27,9 @@ pub mod trajectory;
 pub mod verification;
 pub mod warning;
 
+use std::fmt;
+
+use reentry::plain::Plain;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -65,6 +68,21 @@ impl AngleUnit {
         match self {
             Self::Deg if angle.to_degrees() >= 360.0 => 0.0,
             _ => self.from_radians(angle),
+        }
+    }
+}
+
+/// An angle in radians, for people: in the unit of the request, which it names.
+#[derive(Clone, Copy, Debug)]
+pub struct Angle(pub f64, pub AngleUnit);
+
+impl fmt::Display for Angle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(angle, unit) = *self;
+        let angle = Plain(unit.from_radians(angle));
+        match unit {
+            AngleUnit::Rad => write!(f, "{angle} rad"),
+            AngleUnit::Deg => write!(f, "{angle}°"),
         }
     }
 }

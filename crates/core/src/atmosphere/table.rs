@@ -1,26 +1,94 @@
 //! An atmosphere by a table.
 
 use super::{AtmosphereSample, SENSIBLE_SCALE_HEIGHTS, us76};
-use crate::interpolation::{Cubics, Hint, TableError};
+use crate::interpolation::{Cubics, Hint, TableError, check};
 use crate::scalar::Scalar;
 
-/// Density by altitude and, where they are given, temperature and pressure.
+/// R, the molar gas constant, J/(mol K). CODATA 2018.
+pub const MOLAR_GAS_CONSTANT: f64 = 8.314_462_618;
+
+/// Density by altitude and, where they are given, temperature, pressure and speed of sound.
 ///
-/// Between the altitudes the logarithms of density and pressure are interpolated, and the temperature itself. Outside, the logarithms go on
-/// in straight lines, and the temperature stays as it is.
+/// Between the altitudes the logarithms of density and pressure are interpolated by the cubics of [`interpolation`](crate::interpolation);
+/// temperature, speed of sound and γR/M of the gas are interpolated themselves. Outside, the logarithms go on in straight lines, and the
+/// others stay as they are at the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     log_density: Cubics<1>,
-    temperature: Option<Cubics<1>>,
+    temperature: Option<Column>,
     log_pressure: Option<Cubics<1>>,
+    sound: Sound,
     sensible_altitude: f64,
     scale_height: f64,
-    /// Half the least temperature, under which no trial stage gets that looks over an end of the table, K.
-    coldest: f64,
+}
+
+/// The gas of a [`Table`], by its entries: from it and the temperature follows the speed of sound √(γRT/M).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gas<'a> {
+    /// The Earth's air, with the numbers of [`us76`].
+    Air,
+    /// The same gas at all altitudes.
+    Uniform {
+        /// M, kg/mol.
+        molar_mass: f64,
+        /// γ.
+        heat_capacity_ratio: f64,
+    },
+    /// A gas for every altitude.
+    ByAltitude {
+        /// M, kg/mol.
+        molar_mass: &'a [f64],
+        /// γ.
+        heat_capacity_ratio: &'a [f64],
+    },
+}
+
+/// From what the speed of sound of a table follows.
+#[derive(Clone, Debug, PartialEq)]
+enum Sound {
+    /// There is none.
+    Unknown,
+    /// It is tabulated, m/s.
+    Tabulated(Column),
+    /// c² = T times this number, m²/(s² K).
+    OfTemperature(f64),
+    /// c² = T times γR/M, m²/(s² K), which depends on the altitude.
+    OfTemperatureAndGas(Column),
+}
+
+/// A quantity that is greater than 0.
+#[derive(Clone, Debug, PartialEq)]
+struct Column {
+    cubics: Cubics<1>,
+    /// Half the least entry, under which no trial stage gets that looks over an end of the table.
+    least: f64,
+}
+
+impl Column {
+    fn new(altitude: &[f64], numbers: &[f64]) -> Result<Self, TableError> {
+        let least = 0.5 * numbers.iter().copied().fold(f64::MAX, f64::min);
+        Ok(Self { cubics: column(altitude, numbers, |number| number)?, least })
+    }
+
+    #[inline(always)]
+    fn at<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
+        let [value] = self.cubics.at(stretch, altitude, hint);
+        S::select(value.less_than(self.least), S::from(self.least), value)
+    }
+}
+
+/// Functions of numbers that are greater than 0.
+fn column(altitude: &[f64], numbers: &[f64], function: fn(f64) -> f64) -> Result<Cubics<1>, TableError> {
+    if let Some(index) = numbers.iter().position(|number| !number.is_finite() || *number <= 0.0) {
+        return Err(TableError::OutOfBounds { index });
+    }
+    let numbers: Vec<f64> = numbers.iter().copied().map(function).collect();
+    Cubics::new(altitude, [&numbers])
 }
 
 impl Table {
     /// The table of altitudes, m, ascending, densities, kg/m³, temperatures, K, and pressures, Pa, all of them greater than 0.
+    /// With temperatures, its gas is [`Gas::Air`].
     ///
     /// # Errors
     /// When these are not a table of at least two altitudes.
@@ -33,21 +101,49 @@ impl Table {
         if altitude.len() < 2 {
             return Err(TableError::TooShort { entries: altitude.len(), least: 2 });
         }
-        let column = |numbers: &[f64], function: fn(f64) -> f64| {
-            if let Some(index) = numbers.iter().position(|number| !number.is_finite() || *number <= 0.0) {
-                return Err(TableError::OutOfBounds { index });
-            }
-            let numbers: Vec<f64> = numbers.iter().copied().map(function).collect();
-            Cubics::new(altitude, [&numbers])
-        };
-        let log_density = column(density, f64::ln)?;
-        let coldest = 0.5 * temperature.unwrap_or_default().iter().copied().fold(f64::MAX, f64::min);
-        let temperature = temperature.map(|numbers| column(numbers, |number| number)).transpose()?;
-        let log_pressure = pressure.map(|numbers| column(numbers, f64::ln)).transpose()?;
+        let log_density = column(altitude, density, f64::ln)?;
+        let temperature = temperature.map(|numbers| Column::new(altitude, numbers)).transpose()?;
+        let log_pressure = pressure.map(|numbers| column(altitude, numbers, f64::ln)).transpose()?;
+        let sound = if temperature.is_some() { Sound::OfTemperature(us76::SOUND_OF_KELVIN) } else { Sound::Unknown };
         let logarithms: Vec<f64> = density.iter().copied().map(f64::ln).collect();
         let sensible_altitude = sensible_altitude(altitude, &logarithms, &log_density);
         let scale_height = least_scale_height(altitude, &logarithms);
-        Ok(Self { log_density, temperature, log_pressure, sensible_altitude, scale_height, coldest })
+        Ok(Self { log_density, temperature, log_pressure, sound, sensible_altitude, scale_height })
+    }
+
+    /// The same table with speeds of sound, m/s, all greater than 0, at the altitudes with which it was made.
+    ///
+    /// # Errors
+    /// When these are not as many as the altitudes, or not greater than 0.
+    pub fn with_speed_of_sound(self, altitude: &[f64], speed_of_sound: &[f64]) -> Result<Self, TableError> {
+        Ok(Self { sound: Sound::Tabulated(Column::new(altitude, speed_of_sound)?), ..self })
+    }
+
+    /// The same table of another gas, at the altitudes with which it was made. Without a temperature it makes no difference.
+    ///
+    /// # Errors
+    /// When lists are not as long as the altitudes, or a molar mass or a ratio is not greater than 0.
+    pub fn with_gas(self, altitude: &[f64], gas: Gas) -> Result<Self, TableError> {
+        let of = |molar_mass: f64, heat_capacity_ratio: f64| heat_capacity_ratio * MOLAR_GAS_CONSTANT / molar_mass;
+        let sound = match gas {
+            _ if self.temperature.is_none() => self.sound,
+            Gas::Air => Sound::OfTemperature(us76::SOUND_OF_KELVIN),
+            Gas::Uniform { molar_mass, heat_capacity_ratio } => {
+                let quotient = of(molar_mass, heat_capacity_ratio);
+                let sound = quotient.is_finite() && quotient > 0.0;
+                if !sound {
+                    return Err(TableError::OutOfBounds { index: 0 });
+                }
+                Sound::OfTemperature(quotient)
+            }
+            Gas::ByAltitude { molar_mass, heat_capacity_ratio } => {
+                check(altitude, &[molar_mass, heat_capacity_ratio])?;
+                let quotients: Vec<_> =
+                    molar_mass.iter().zip(heat_capacity_ratio).map(|(mass, ratio)| of(*mass, *ratio)).collect();
+                Sound::OfTemperatureAndGas(Column::new(altitude, &quotients)?)
+            }
+        };
+        Ok(Self { sound, ..self })
     }
 
     /// Its lowest and highest altitude, m.
@@ -58,6 +154,11 @@ impl Table {
     /// Whether it knows the temperature.
     pub fn has_temperature(&self) -> bool {
         self.temperature.is_some()
+    }
+
+    /// Whether it knows the speed of sound.
+    pub fn has_speed_of_sound(&self) -> bool {
+        self.sound != Sound::Unknown
     }
 
     /// Whether it knows the pressure.
@@ -74,23 +175,31 @@ impl Table {
     /// The temperature, K, at an altitude, m, if it is known.
     #[inline(always)]
     pub fn temperature<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> Option<S> {
-        self.temperature.as_ref().map(|temperature| {
-            let [temperature] = temperature.at(stretch, altitude, hint);
-            S::select(temperature.less_than(self.coldest), S::from(self.coldest), temperature)
-        })
+        self.temperature.as_ref().map(|temperature| temperature.at(stretch, altitude, hint))
+    }
+
+    /// The speed of sound, m/s, at an altitude, m, if it is known: as tabulated, or √(γRT/M).
+    #[inline(always)]
+    pub fn speed_of_sound<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> Option<S> {
+        let temperature = || self.temperature(stretch, altitude, hint);
+        match &self.sound {
+            Sound::Unknown => None,
+            Sound::Tabulated(speed) => Some(speed.at(stretch, altitude, hint)),
+            Sound::OfTemperature(square) => temperature().map(|kelvin| (kelvin * *square).sqrt()),
+            Sound::OfTemperatureAndGas(square) => {
+                temperature().map(|kelvin| (kelvin * square.at(stretch, altitude, hint)).sqrt())
+            }
+        }
     }
 
     /// The air at an altitude, m, by the formulas of a stretch.
-    ///
-    /// The speed of sound is √(γ R* T/M₀), with the numbers of [`us76`].
     #[inline(always)]
     pub fn sample<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
-        let temperature = self.temperature(stretch, altitude, hint);
         AtmosphereSample {
             density: self.density(stretch, altitude, hint),
-            temperature,
+            temperature: self.temperature(stretch, altitude, hint),
             pressure: self.log_pressure.as_ref().map(|pressure| exponential(pressure, stretch, altitude, hint)),
-            speed_of_sound: temperature.map(us76::speed_of_sound),
+            speed_of_sound: self.speed_of_sound(stretch, altitude, hint),
         }
     }
 

@@ -51,6 +51,8 @@ const HEAT_RATIO: f64 = 1.4;
 const TEMPERATURE_AT_86_KM: f64 = 186.8673;
 /// Z₇, where the mixed air ends, m.
 const MIXED_TOP: f64 = 86e3;
+/// Where the standard begins, m.
+const BOTTOM: f64 = -5e3;
 /// Z₁₂, where the standard ends, m.
 const TOP: f64 = 1000e3;
 /// Above it the density is less than 3e-15 of that at sea level, m, and almost all of it hydrogen and helium.
@@ -62,12 +64,14 @@ const LOWEST_OF_TRIALS: f64 = -1e6;
 /// The height, m, over which the density falls by e at 110 km, where the temperature begins to rise; it is greater elsewhere.
 pub(super) const LEAST_SCALE_HEIGHT: f64 = 5424.0;
 
-/// The geometric altitudes, m, upward, at which the density or one of its first three derivatives jumps.
+/// The geometric altitudes, m, upward, at which the standard begins and ends, and between them at which the density or one of its first
+/// three derivatives jumps.
 ///
-/// The layers of the mixed air (Table 4), then 86 km; 91, 110 and 120 km, where the temperature changes its formula (Table 5);
+/// -5 km; the layers of the mixed air (Table 4), then 86 km; 91, 110 and 120 km, where the temperature changes its formula (Table 5);
 /// 95 and 97 km, where eddies begin to weaken and a flux of atomic oxygen ends (equation 37 and its neighbours); 100 km, where the air
 /// stops being mixed; 150 and 500 km, between which hydrogen flows upward; 1000 km.
-pub const BOUNDARIES: [f64; 16] = [
+pub const BOUNDARIES: [f64; 17] = [
+    BOTTOM,
     geometric(11e3),
     geometric(20e3),
     geometric(32e3),
@@ -152,16 +156,19 @@ pub fn sample_in<S: Scalar>(stretch: usize, altitude: S) -> AtmosphereSample<S> 
     }
 }
 
+/// γ R*/M₀: the square of the speed of sound in mixed air over its temperature, m²/(s² K).
+pub(super) const SOUND_OF_KELVIN: f64 = HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT;
+
 /// The speed of sound in mixed air of a temperature, K, in m/s (equation 50).
 #[inline(always)]
-pub(super) fn speed_of_sound<S: Scalar>(temperature: S) -> S {
-    (temperature * (HEAT_RATIO * GAS_CONSTANT / MOLECULAR_WEIGHT)).sqrt()
+fn speed_of_sound<S: Scalar>(temperature: S) -> S {
+    (temperature * SOUND_OF_KELVIN).sqrt()
 }
 
 /// The altitude, m, or the nearest at which the formulas of a stretch are still used.
 #[inline(always)]
 fn within_bounds<S: Scalar>(stretch: usize, altitude: S) -> S {
-    let lowest = if stretch == 0 { -0.5 * EARTH_RADIUS } else { LOWEST_OF_TRIALS };
+    let lowest = if stretch <= 1 { -0.5 * EARTH_RADIUS } else { LOWEST_OF_TRIALS };
     let altitude = S::select(altitude.less_than(lowest), S::from(lowest), altitude);
     S::select(altitude.less_than(HIGHEST), altitude, S::from(HIGHEST))
 }
@@ -212,13 +219,13 @@ fn thermosphere<S: Scalar>(stretch: usize, altitude: S) -> S {
     const LAPSE: f64 = 0.012;
     const COLDEST: f64 = 100.0;
     let temperature = match stretch {
-        ..=11 => {
+        ..=12 => {
             let on_ellipse = S::select(altitude.less_than(110e3), altitude, S::from(110e3));
             let into_ellipse = S::select(on_ellipse.less_than(91e3), S::zero(), on_ellipse - 91e3) * (1.0 / WIDTH);
             let ellipse = (-into_ellipse * into_ellipse + 1.0).sqrt() * (TEMPERATURE_AT_86_KM - CENTRE) + CENTRE;
             ellipse + (altitude - on_ellipse) * LAPSE
         }
-        12 => (altitude - 110e3) * LAPSE + 240.0,
+        13 => (altitude - 110e3) * LAPSE + 240.0,
         _ => {
             let xi = (altitude - 120e3) * (altitude + EARTH_RADIUS).recip() * (EARTH_RADIUS + 120e3);
             (xi * -0.018_75e-3).exp() * -640.0 + 1000.0

@@ -23,7 +23,7 @@ pub struct Loads<S> {
     pub speed: S,
     /// Relative to the air, m/s.
     pub air_speed: S,
-    /// The speed relative to the air over that of sound; none where the atmosphere has no temperature.
+    /// The speed relative to the air over that of sound; none where the atmosphere has no speed of sound.
     pub mach: Option<S>,
     /// ½ρV² of the speed relative to the air, Pa.
     pub dynamic_pressure: S,
@@ -60,7 +60,7 @@ impl<P: Scalar> Forces<P> {
     pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &PlanetFixed<S>) -> Loads<S> {
         let PlanetFixed { position, velocity } = state;
         let mut flow = self.flow::<false, _>(state);
-        if flow.density_and_mach.is_none() && self.models.atmosphere.has_temperature() {
+        if flow.density_and_mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
             let (density, sound) = self.models.atmosphere.density_and_sound(
                 self.regime.of(Switch::Atmosphere),
                 flow.altitude,

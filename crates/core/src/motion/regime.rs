@@ -33,11 +33,13 @@ pub enum Switch {
     Radiation,
 }
 
-/// A table, and the quantity by which something is looked up in it.
+/// A table or a model of a given range, and the quantity by which something is looked up in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lookup {
     /// The atmosphere by altitude; outside, the logarithm of its density goes on in a straight line.
     Atmosphere,
+    /// The U.S. Standard Atmosphere, 1976, by altitude; below -5 km its lowest layer goes on, above 1000 km its scale height stays.
+    Us76,
     /// The wind by altitude.
     Wind,
     /// The aerodynamics by Mach number.
@@ -181,16 +183,22 @@ impl Forces {
             || self.canopies.as_ref().is_some_and(|canopies| !canopies.filling.is_empty())
     }
 
-    /// The tables outside which the present regime lies: the edge beyond which it does, and whether that is above it.
+    /// The tables, and the model of a given range, outside which the present regime lies: the edge beyond which it does, and whether that is above it.
     pub(crate) fn outside_tables(&self) -> impl Iterator<Item = (Lookup, f64, bool)> {
+        let atmosphere = match self.models.atmosphere {
+            Atmosphere::Table(_) => Some(Lookup::Atmosphere),
+            Atmosphere::Us76 => Some(Lookup::Us76),
+            Atmosphere::Vacuum | Atmosphere::Layers(_) | Atmosphere::Exponential { .. } => None,
+        };
         let tables = [
-            (Switch::Atmosphere, Lookup::Atmosphere, matches!(self.models.atmosphere, Atmosphere::Table(_))),
-            (Switch::Wind, Lookup::Wind, true),
-            (Switch::Mach, Lookup::Mach, true),
-            (Switch::TableAngleOfAttack, Lookup::AngleOfAttack, true),
-            (Switch::Radiation, Lookup::Radiation, true),
+            (Switch::Atmosphere, atmosphere),
+            (Switch::Wind, Some(Lookup::Wind)),
+            (Switch::Mach, Some(Lookup::Mach)),
+            (Switch::TableAngleOfAttack, Some(Lookup::AngleOfAttack)),
+            (Switch::Radiation, Some(Lookup::Radiation)),
         ];
-        tables.into_iter().filter(|(.., is_table)| *is_table).filter_map(|(switch, table, _)| {
+        tables.into_iter().filter_map(|(switch, table)| {
+            let table = table?;
             let (_, range) = self.boundaries(switch)?;
             let stretch = self.regime.of(switch);
             let (first, last) = (*range.first()?, *range.last()?);

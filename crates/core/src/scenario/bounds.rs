@@ -4,11 +4,13 @@ use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt;
 
-use super::{Case, Fault, Plain};
+use super::{Case, Fault};
 use crate::atmosphere::Atmosphere;
 use crate::control::Command;
 use crate::event::{Condition, Effect, Engine, Quantity, Trigger};
+use crate::heating::{Convective, Heating};
 use crate::parachute::Parachute;
+use crate::plain::{Plain, apart};
 use crate::planet::{Gravity, Zonal};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
@@ -57,6 +59,12 @@ impl Bound {
     pub const ZONAL_COEFFICIENT: Self = Self::between(-0.1, 0.1);
     /// Components of the wind, m/s.
     pub const WIND: Self = Self::between(-1e4, 1e4);
+    /// Speeds of the wind, m/s.
+    pub const WIND_SPEED: Self = Self::between(0.0, 1e4);
+    /// Molar masses, kg/mol; in g/mol, that of hydrogen atoms is greater.
+    pub const MOLAR_MASS: Self = Self::between(1e-6, 1.0);
+    /// Ratios of heat capacities; 5/3 for atoms alone.
+    pub const HEAT_CAPACITY_RATIO: Self = Self::between(1.0, 2.0);
     /// The time at which a flight ends, s.
     pub const STOP_TIME: Self = Self::above(0.0, 1e9);
     /// Drag areas of parachutes, m².
@@ -93,19 +101,29 @@ impl Bound {
     pub fn scaled(self, scale: f64) -> Self {
         Self { minimum: self.minimum * scale, maximum: self.maximum * scale, ..self }
     }
+
+    /// What is wrong with a value that is none of them, with enough digits to see it.
+    pub fn refusal(&self, value: f64) -> String {
+        let [minimum, maximum, value] = apart([self.minimum, self.maximum, value]);
+        format!("must be {}, got {value}", self.between_texts(&minimum, &maximum))
+    }
+
+    fn between_texts(&self, minimum: &str, maximum: &str) -> String {
+        let unbounded = |limit: f64| limit.abs() >= f64::MAX;
+        match (self.exclusive, unbounded(self.minimum), unbounded(self.maximum)) {
+            (_, true, true) => "finite".to_owned(),
+            (true, _, true) => format!("greater than {minimum}"),
+            (true, _, false) => format!("greater than {minimum} and at most {maximum}"),
+            (false, true, false) => format!("at most {maximum}"),
+            (false, false, true) => format!("at least {minimum}"),
+            (false, false, false) => format!("between {minimum} and {maximum}"),
+        }
+    }
 }
 
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unbounded = |limit: f64| limit.abs() >= f64::MAX;
-        match (self.exclusive, unbounded(self.minimum), unbounded(self.maximum)) {
-            (_, true, true) => write!(f, "finite"),
-            (true, _, true) => write!(f, "greater than {}", self.minimum),
-            (true, _, false) => write!(f, "greater than {} and at most {}", self.minimum, Plain(self.maximum)),
-            (false, true, false) => write!(f, "at most {}", Plain(self.maximum)),
-            (false, false, true) => write!(f, "at least {}", self.minimum),
-            (false, false, false) => write!(f, "between {} and {}", Plain(self.minimum), Plain(self.maximum)),
-        }
+        f.write_str(&self.between_texts(&Plain(self.minimum).to_string(), &Plain(self.maximum).to_string()))
     }
 }
 
@@ -145,6 +163,9 @@ pub(super) fn out_of_bounds(case: &Case) -> Vec<Fault> {
     }
     checks.extend(vehicle.nose_radius.map(|radius| ("vehicle.nose_radius", radius, Bound::POSITIVE)));
     checks.extend(heating.map(|heating| ("heating.emissivity", heating.emissivity, Bound::EMISSIVITY)));
+    if let Some(Heating { convective: Convective::SuttonGraves { constant }, .. }) = *heating {
+        checks.push(("heating.convective.constant", constant, Bound::POSITIVE));
+    }
     checks.extend(stop.ceiling.map(|ceiling| ("stop.ceiling", ceiling, Bound::DISTANCE)));
     let commands = [("control.bank_angle", &control.bank_angle), ("control.angle_of_attack", &control.angle_of_attack)];
     checks.extend(commands.into_iter().filter_map(|(field, command)| match command {

@@ -29,7 +29,7 @@ fn elements(list: &Value) -> &[Value] {
 
 /// The request of a flight: what all have, what the flight has that it is like, and what it has itself. It ends where a condition is met,
 /// unless that is null.
-fn request(file: &Value, flight: &Value, when: &Value) -> Value {
+pub fn request(file: &Value, flight: &Value, when: &Value) -> Value {
     let like = elements(&file["flights"]).iter().find(|other| other["name"] == flight["like"]);
     let mut request = file["defaults"].clone();
     for part in like.into_iter().chain([flight]) {

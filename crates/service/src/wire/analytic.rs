@@ -10,7 +10,6 @@ use utoipa::openapi::schema::{ObjectBuilder, RefBuilder};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
-use super::AngleUnit;
 use super::reader::{self, Fault};
 use super::scenario::{Job, SimulateRequest, Wanted};
 use super::sensitivities::Sensitivities;
@@ -20,6 +19,7 @@ use super::vehicle::Aerodynamics;
 use super::verification::Verification;
 use super::warning::Warning;
 use super::wind::Wind;
+use super::{Angle, AngleUnit};
 
 /// The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
@@ -113,11 +113,11 @@ impl AnalyticJob {
         let sampling = request.output.sampling();
         let mut misplaced = request.beyond_rows(wanted);
         if request.output.columns.is_some() {
-            let detail = "must be left out: this answer has columns of its own";
+            let detail = "must not be given: this answer has columns of its own";
             misplaced.push(Fault::new("/output/columns", detail));
         }
         if request.heating.is_some() {
-            misplaced.push(Fault::new("/heating", "must be left out: the theories know no heating"));
+            misplaced.push(Fault::new("/heating", "must not be given: the theories know no heating"));
         }
         if sampling.is_none() {
             let detail = "must not be false: the predictions are made at the rows of the flight";
@@ -167,7 +167,7 @@ fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
     };
     let detail = match fault {
         TheoryFault::NoDescent { flight_path_angle } => {
-            format!("{fault}, got {}", request.angle_unit.from_radians(*flight_path_angle))
+            format!("{fault}, got {}", Angle(*flight_path_angle, request.angle_unit))
         }
         _ => fault.to_string(),
     };

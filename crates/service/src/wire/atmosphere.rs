@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use reentry::atmosphere::{Atmosphere as CoreAtmosphere, Layer as CoreLayer, Layers as CoreLayers, Table as CoreTable};
+use reentry::atmosphere::{
+    Atmosphere as CoreAtmosphere, Gas, Layer as CoreLayer, Layers as CoreLayers, Table as CoreTable,
+};
 use reentry::scenario::Bound;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::reader::{MOST_ENTRIES, Object};
+use super::reader::{MOST_ENTRIES, NumberOrList, Object};
 
 /// The atmosphere, which turns with the planet; altitudes are those along the radius vector.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -44,9 +46,13 @@ pub struct ExponentialAtmosphere {
     /// H, m.
     #[schema(required = false, exclusive_minimum = 0, default = 6935)]
     pub scale_height: f64,
+    /// Whether both numbers were given.
+    #[serde(skip)]
+    #[schema(ignore)]
+    pub is_given: bool,
 }
 
-/// The U.S. Standard Atmosphere, 1976, to 1000 km, with temperature, pressure and speed of sound.
+/// The U.S. Standard Atmosphere, 1976, from -5 to 1000 km, with temperature, pressure and speed of sound.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Us76Atmosphere {
     /// The kind of atmosphere.
@@ -109,12 +115,22 @@ pub struct TableAtmosphere {
     /// kg/m³. Beyond the altitudes its logarithm goes on in a straight line.
     #[schema(min_items = 2, max_items = 10_000)]
     pub density: Vec<f64>,
-    /// K; with it there are Mach numbers.
+    /// K. With it the speed of sound is √(γRT/M): that of air, or of the gas with `molar_mass` and `heat_capacity_ratio`.
     #[schema(required = false, value_type = Vec<f64>, min_items = 2, max_items = 10_000)]
     pub temperature: Option<Vec<f64>>,
     /// Pa.
     #[schema(required = false, value_type = Vec<f64>, min_items = 2, max_items = 10_000)]
     pub pressure: Option<Vec<f64>>,
+    /// m/s, in place of the one that follows from the temperature; not with `molar_mass` and `heat_capacity_ratio`.
+    /// Beyond the altitudes it stays as it is at the end.
+    #[schema(required = false, value_type = Vec<f64>, min_items = 2, max_items = 10_000)]
+    pub speed_of_sound: Option<Vec<f64>>,
+    /// M of the gas, kg/mol: a number, or one for each altitude; 0.04401 for carbon dioxide. With `heat_capacity_ratio` and `temperature`.
+    #[schema(required = false, value_type = NumberOrList)]
+    pub molar_mass: Option<NumberOrList>,
+    /// γ of the gas: a number, or one for each altitude, of which γ/M is interpolated. With `molar_mass` and `temperature`.
+    #[schema(required = false, value_type = NumberOrList)]
+    pub heat_capacity_ratio: Option<NumberOrList>,
     /// The same, for the core.
     #[serde(skip)]
     #[schema(ignore)]
@@ -156,6 +172,23 @@ impl Atmosphere {
         }
     }
 
+    /// For a flight on another planet: what of it is the Earth's, and the remedy; nothing where all of it was given.
+    pub(super) fn of_earth(&self) -> Option<&'static str> {
+        match self {
+            Self::Us76(_) => Some("Atmosphere us76 is the Earth's: give a table"),
+            Self::Layered(LayeredAtmosphere { preset: Some(LayersPreset::EarthSevenLayer), .. }) => {
+                Some("Atmosphere earth_seven_layer is the Earth's: give layers")
+            }
+            Self::Exponential(ExponentialAtmosphere { is_given: false, .. }) => {
+                Some("Default density and scale height are the Earth's: give surface_density and scale_height")
+            }
+            Self::Table(table) if table.is_of_air() => Some(
+                "Speed of sound is that of air: give molar_mass and heat_capacity_ratio, or speed_of_sound, in the table",
+            ),
+            Self::Exponential(_) | Self::Layered(_) | Self::Table(_) | Self::Vacuum(_) => None,
+        }
+    }
+
     /// Its `type`.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -170,10 +203,11 @@ impl Atmosphere {
 
 impl ExponentialAtmosphere {
     fn read(object: &mut Object) -> Option<Self> {
+        let is_given = object.has("surface_density") & object.has("scale_height");
         // Those of `CoreAtmosphere::EARTH_JAMESON`.
         let surface_density = object.number_or("surface_density", Bound::NON_NEGATIVE, 1.547_93);
         let scale_height = object.number_or("scale_height", Bound::POSITIVE, 6935.0);
-        Some(Self { kind: "exponential", surface_density: surface_density?, scale_height: scale_height? })
+        Some(Self { kind: "exponential", surface_density: surface_density?, scale_height: scale_height?, is_given })
     }
 }
 
@@ -213,20 +247,94 @@ impl Layer {
 }
 
 impl TableAtmosphere {
+    /// Whether its speed of sound is that of air.
+    fn is_of_air(&self) -> bool {
+        self.temperature.is_some() && self.speed_of_sound.is_none() && self.molar_mass.is_none()
+    }
+
     fn read(object: &mut Object) -> Option<Self> {
         let altitude = object.entries("altitude", Bound::DISTANCE, [2, MOST_ENTRIES]);
         let altitude = altitude.filter(|altitude| object.ascending("altitude", "", altitude));
         let density = object.entries("density", Bound::POSITIVE, [2, MOST_ENTRIES]);
         let temperature = object.optional_entries("temperature", Bound::POSITIVE, [2, MOST_ENTRIES]);
         let pressure = object.optional_entries("pressure", Bound::POSITIVE, [2, MOST_ENTRIES]);
-        let sound = object.equally_long("altitude", &["density", "temperature", "pressure"]);
+        let speed_of_sound = object.optional_entries("speed_of_sound", Bound::POSITIVE, [2, MOST_ENTRIES]);
+        let mut of_gas =
+            |name, bound| object.has(name).then(|| object.number_or_entries(name, bound, [2, MOST_ENTRIES]));
+        let molar_mass = of_gas("molar_mass", Bound::MOLAR_MASS);
+        let heat_capacity_ratio = of_gas("heat_capacity_ratio", Bound::HEAT_CAPACITY_RATIO);
+        const LISTS: [&str; 6] =
+            ["density", "temperature", "pressure", "speed_of_sound", "molar_mass", "heat_capacity_ratio"];
+        let sound = object.equally_long("altitude", &LISTS) & Self::has_one_gas(object);
         let (altitude, density) = (altitude?, density?);
-        let lost = object.has("temperature") && temperature.is_none() || object.has("pressure") && pressure.is_none();
+        let (molar_mass, heat_capacity_ratio) = (given(molar_mass)?, given(heat_capacity_ratio)?);
+        let optional = [("temperature", &temperature), ("pressure", &pressure), ("speed_of_sound", &speed_of_sound)];
+        let lost = optional.into_iter().any(|(name, list)| object.has(name) && list.is_none());
         if lost || !sound {
             return None;
         }
         let core = CoreTable::new(&altitude, &density, temperature.as_deref(), pressure.as_deref());
+        let core = core.and_then(|core| match (&speed_of_sound, &molar_mass, &heat_capacity_ratio) {
+            (Some(speed_of_sound), ..) => core.with_speed_of_sound(&altitude, speed_of_sound),
+            (None, Some(NumberOrList::Number(mass)), Some(NumberOrList::Number(ratio))) => {
+                core.with_gas(&altitude, Gas::Uniform { molar_mass: *mass, heat_capacity_ratio: *ratio })
+            }
+            (None, Some(mass), Some(ratio)) => {
+                let [mass, ratio] = [mass, ratio].map(|of| of.spread(altitude.len()));
+                core.with_gas(&altitude, Gas::ByAltitude { molar_mass: &mass, heat_capacity_ratio: &ratio })
+            }
+            _ => Ok(core),
+        });
         let core = Arc::new(object.sound(core)?);
-        Some(Self { kind: "table", altitude, density, temperature, pressure, core })
+        Some(Self {
+            kind: "table",
+            altitude,
+            density,
+            temperature,
+            pressure,
+            speed_of_sound,
+            molar_mass,
+            heat_capacity_ratio,
+            core,
+        })
+    }
+
+    /// Notes a fault unless the gas is given by both of its numbers, beside a temperature, or by the speed of sound, or not at all.
+    fn has_one_gas(object: &mut Object) -> bool {
+        const NUMBERS: [&str; 2] = ["molar_mass", "heat_capacity_ratio"];
+        let given = NUMBERS.map(|name| object.has(name));
+        let mut sound = true;
+        let mut fault = |object: &mut Object, name: &str, detail: &str| {
+            object.fault_of(name, detail.to_owned());
+            sound = false;
+        };
+        match given {
+            [false, false] => {}
+            _ if object.has("speed_of_sound") => {
+                for (name, _) in NUMBERS.into_iter().zip(given).filter(|(_, given)| *given) {
+                    fault(object, name, "must not be given together with speed_of_sound");
+                }
+            }
+            [of_mass, of_ratio] => {
+                if !of_mass {
+                    fault(object, NUMBERS[0], "is required together with heat_capacity_ratio");
+                }
+                if !of_ratio {
+                    fault(object, NUMBERS[1], "is required together with molar_mass");
+                }
+                if !object.has("temperature") {
+                    fault(object, "temperature", "is required together with molar_mass and heat_capacity_ratio");
+                }
+            }
+        }
+        sound
+    }
+}
+
+/// What was read of a field that may be left out; none where it is at fault.
+fn given<T>(read: Option<Option<T>>) -> Option<Option<T>> {
+    match read {
+        Some(None) => None,
+        other => Some(other.flatten()),
     }
 }

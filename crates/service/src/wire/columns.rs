@@ -32,6 +32,7 @@ pub struct Column {
 enum Needs {
     Nothing,
     Temperature,
+    SpeedOfSound,
     Pressure,
     Epoch,
     Heating,
@@ -62,6 +63,8 @@ enum Quantity {
 pub struct Known {
     /// Whether the atmosphere has a temperature.
     pub temperature: bool,
+    /// Whether the atmosphere has a speed of sound.
+    pub speed_of_sound: bool,
     /// Whether the atmosphere has a pressure.
     pub pressure: bool,
     /// The instant t = 0.
@@ -159,13 +162,13 @@ pub static COLUMNS: [Column; 44] = [
         point.temperature
     }),
     maybe("pressure", "Of the air, Pa; where the atmosphere has a pressure.", Needs::Pressure, |point| point.pressure),
-    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has a temperature.", Needs::Temperature, |point| {
+    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has one.", Needs::SpeedOfSound, |point| {
         point.speed_of_sound
     }),
     maybe(
         "mach",
-        "The speed relative to the air over that of sound; where the atmosphere has a temperature.",
-        Needs::Temperature,
+        "The speed relative to the air over that of sound; where the atmosphere has a speed of sound.",
+        Needs::SpeedOfSound,
         |point| point.loads.mach,
     ),
     angle("bank_angle", "As commanded.", |point| point.bank_angle),
@@ -326,6 +329,9 @@ impl Column {
         match self.needs {
             Needs::Temperature if !known.temperature => {
                 Some("an atmosphere that has a temperature: us76, or a table with one")
+            }
+            Needs::SpeedOfSound if !known.speed_of_sound => {
+                Some("an atmosphere that has a speed of sound: us76, or a table with temperature or speed_of_sound")
             }
             Needs::Pressure if !known.pressure => Some("an atmosphere that has a pressure: us76, or a table with one"),
             Needs::Epoch if known.epoch.is_none() => Some("an epoch"),

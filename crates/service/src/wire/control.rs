@@ -92,7 +92,7 @@ pub enum Against {
     Altitude,
     /// Relative to the rotating planet, m/s.
     Speed,
-    /// The speed relative to the air over that of sound; needs an atmosphere that has a temperature.
+    /// The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound.
     Mach,
 }
 

@@ -20,7 +20,8 @@ use super::warning::Warning;
 /// A state to convert. SI units; angles in `angle_unit`.
 #[derive(Clone, Debug, ToSchema)]
 pub struct ConvertRequest {
-    /// The unit of every angle in the request and in the answer.
+    /// The unit of every angle in the request and in the answer. Without it, an angle other than 0 comes with the warning
+    /// `angle_unit_assumed`.
     #[schema(required = false, default = "rad")]
     pub angle_unit: AngleUnit,
     /// Whether the answer repeats the request, with every default filled in, as `case`.
@@ -35,6 +36,9 @@ pub struct ConvertRequest {
     pub epoch: Option<Instant>,
     /// The state.
     pub state: State,
+    /// Whether the unit of angles is left out, though some angle is not 0.
+    #[schema(ignore)]
+    pub assumes_angle_unit: bool,
 }
 
 /// The state in every coordinate system; each can be sent back as it is.
@@ -85,13 +89,15 @@ pub struct Derived {
 
 impl ConvertRequest {
     fn read(object: &mut Object) -> Option<Self> {
+        let has_unit = object.has("angle_unit");
         let angle_unit = object.angle_unit();
         let echo = object.boolean_or("echo", false);
         let planet = object.object_or("planet", json!({}), Planet::read);
         let epoch = read_epoch(object);
         let has_epoch = object.has("epoch");
         let state = object.object("state", |object| State::read(object, has_epoch));
-        Some(Self { angle_unit: angle_unit?, echo: echo?, planet: planet?, epoch, state: state? })
+        let assumes_angle_unit = !has_unit && object.turns();
+        Some(Self { angle_unit: angle_unit?, echo: echo?, planet: planet?, epoch, state: state?, assumes_angle_unit })
     }
 }
 
@@ -114,6 +120,7 @@ impl ConvertResponse {
         let elements = CoreElements::from_inertial(&inertial, planet.orbital_gravitational_parameter);
         let elements_only = elements.ok().map(|(elements, _)| elements);
         let mut warnings = Vec::new();
+        warnings.extend(request.assumes_angle_unit.then(Warning::angle_unit_assumed));
         match elements {
             Ok((_, undefined)) => warnings.extend(Warning::of_undefined_elements(undefined)),
             Err(_) => warnings.push(Warning::rectilinear()),

@@ -3,7 +3,10 @@
 use reentry::heating::{Convective as CoreConvective, Heating as CoreHeating, Radiative as CoreRadiative};
 use reentry::scenario::Bound;
 use serde::Serialize;
-use utoipa::ToSchema;
+use serde_json::json;
+use utoipa::openapi::schema::{OneOfBuilder, RefBuilder};
+use utoipa::openapi::{RefOr, Schema};
+use utoipa::{PartialSchema, ToSchema};
 
 use super::reader::Object;
 
@@ -11,9 +14,9 @@ use super::reader::Object;
 /// temperature of a wall that radiates as much as it gets.
 #[derive(Clone, Copy, Debug, ToSchema)]
 pub struct Heating {
-    /// The flux by convection.
+    /// The flux by convection: a correlation for air by its name, or that of Sutton and Graves with the constant of another gas.
     #[schema(required = false, default = "sutton_graves")]
-    pub convective: Convective,
+    pub convective: ConvectiveFlux,
     /// The flux by radiation of the shocked air.
     #[schema(required = false, default = "none")]
     pub radiative: Radiative,
@@ -22,7 +25,43 @@ pub struct Heating {
     pub emissivity: f64,
 }
 
-/// Correlations of the convective flux, W/m², with the density ρ, kg/m³, the speed V relative to the air, m/s, and the nose radius r, m.
+/// How the convective flux is computed.
+#[derive(Clone, Copy, Debug)]
+pub enum ConvectiveFlux {
+    /// By a correlation for air.
+    OfAir(Convective),
+    /// In another gas.
+    OfGas(SuttonGraves),
+}
+
+/// Sutton and Graves's correlation in a gas: k √(ρ/r) V³.
+#[derive(Clone, Copy, Debug, ToSchema)]
+pub struct SuttonGraves {
+    /// The kind of correlation.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// k, kg^0.5/m; 1.7415e-4 for air. NASA TR R-376 has it for other gases.
+    #[schema(exclusive_minimum = 0)]
+    pub constant: f64,
+}
+
+impl PartialSchema for ConvectiveFlux {
+    fn schema() -> RefOr<Schema> {
+        let of_air = RefBuilder::new().ref_location_from_schema_name(Convective::name());
+        let of_gas = RefBuilder::new().ref_location_from_schema_name(SuttonGraves::name());
+        let description = "The convective flux: by a correlation for air, or in another gas.";
+        OneOfBuilder::new().item(of_air).item(of_gas).description(Some(description)).into()
+    }
+}
+
+impl ToSchema for ConvectiveFlux {
+    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
+        schemas.push((Convective::name().into(), Convective::schema()));
+        schemas.push((SuttonGraves::name().into(), SuttonGraves::schema()));
+    }
+}
+
+/// Correlations of the convective flux in air, W/m², with the density ρ, kg/m³, the speed V relative to the air, m/s, and the nose radius r, m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Convective {
@@ -45,14 +84,40 @@ pub enum Radiative {
     TauberSutton,
 }
 
+impl SuttonGraves {
+    fn read(object: &mut Object) -> Option<Self> {
+        let kind = object.choice("type", &[("sutton_graves", "sutton_graves")]);
+        let constant = object.number("constant", Bound::POSITIVE);
+        Some(Self { kind: kind?, constant: constant? })
+    }
+}
+
 impl Heating {
+    /// The correlations that are those of air.
+    pub(super) fn of_air(&self) -> Vec<&'static str> {
+        let convective = match self.convective {
+            ConvectiveFlux::OfAir(Convective::SuttonGraves) => Some("sutton_graves"),
+            ConvectiveFlux::OfAir(Convective::DetraKempRiddell) => Some("detra_kemp_riddell"),
+            ConvectiveFlux::OfAir(Convective::Chapman) => Some("chapman"),
+            ConvectiveFlux::OfGas(_) => None,
+        };
+        let radiative = match self.radiative {
+            Radiative::None => None,
+            Radiative::TauberSutton => Some("tauber_sutton"),
+        };
+        convective.into_iter().chain(radiative).collect()
+    }
+
     pub(super) fn read(object: &mut Object) -> Option<Self> {
         let convective = [
-            ("sutton_graves", Convective::SuttonGraves),
-            ("detra_kemp_riddell", Convective::DetraKempRiddell),
-            ("chapman", Convective::Chapman),
+            ("sutton_graves", ConvectiveFlux::OfAir(Convective::SuttonGraves)),
+            ("detra_kemp_riddell", ConvectiveFlux::OfAir(Convective::DetraKempRiddell)),
+            ("chapman", ConvectiveFlux::OfAir(Convective::Chapman)),
         ];
-        let convective = object.choice_or("convective", &convective, "sutton_graves");
+        object.fill("convective", json!("sutton_graves"));
+        let convective = object.choice_or_object("convective", &convective, |object| {
+            SuttonGraves::read(object).map(ConvectiveFlux::OfGas)
+        });
         let radiative = [("none", Radiative::None), ("tauber_sutton", Radiative::TauberSutton)];
         let radiative = object.choice_or("radiative", &radiative, "none");
         let emissivity = object.number_or("emissivity", Bound::EMISSIVITY, 0.85);
@@ -62,9 +127,10 @@ impl Heating {
     pub(super) fn to_core(self) -> CoreHeating {
         CoreHeating {
             convective: match self.convective {
-                Convective::SuttonGraves => CoreConvective::SuttonGraves,
-                Convective::DetraKempRiddell => CoreConvective::DetraKempRiddell,
-                Convective::Chapman => CoreConvective::Chapman,
+                ConvectiveFlux::OfAir(Convective::SuttonGraves) => CoreConvective::SUTTON_GRAVES,
+                ConvectiveFlux::OfAir(Convective::DetraKempRiddell) => CoreConvective::DetraKempRiddell,
+                ConvectiveFlux::OfAir(Convective::Chapman) => CoreConvective::Chapman,
+                ConvectiveFlux::OfGas(SuttonGraves { constant, .. }) => CoreConvective::SuttonGraves { constant },
             },
             radiative: match self.radiative {
                 Radiative::None => CoreRadiative::None,

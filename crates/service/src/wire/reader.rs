@@ -3,11 +3,34 @@
 use std::ops::RangeInclusive;
 
 use reentry::interpolation::TableError;
+use reentry::plain::apart;
 use reentry::scenario::Bound;
+use serde::Serialize;
 use serde_json::{Map, Number, Value, json};
+use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::json::{shortened, shown};
+
+/// A number for all entries of a table, or one for each.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum NumberOrList {
+    /// For all.
+    Number(f64),
+    /// For each.
+    List(Vec<f64>),
+}
+
+impl NumberOrList {
+    /// One for each of so many entries.
+    pub fn spread(&self, count: usize) -> Vec<f64> {
+        match self {
+            Self::Number(number) => vec![*number; count],
+            Self::List(list) => list.clone(),
+        }
+    }
+}
 
 /// Something wrong with one field.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +53,7 @@ impl Fault {
 /// # Errors
 /// With every fault that was found.
 pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut Object) -> Option<T>) -> Result<T, Vec<Fault>> {
-    let mut context = Context { faults: Vec::new(), unit: None };
+    let mut context = Context { faults: Vec::new(), unit: None, turns: false };
     let result = object(tree, String::new(), &mut context, read);
     match result {
         Some(request) if context.faults.is_empty() => Ok(request),
@@ -55,6 +78,8 @@ struct Context {
     faults: Vec<Fault>,
     /// None where the request's own unit is faulty: the range of an angle is then unknown.
     unit: Option<AngleUnit>,
+    /// Whether an angle other than 0 was read.
+    turns: bool,
 }
 
 /// An object of the request, being read. Every method that finds a fault notes it and returns `None`.
@@ -142,7 +167,9 @@ impl Object<'_> {
     pub fn angle(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
         let unit = self.context.unit;
         let angle = bounded_angle(self.required(name)?, bound, unit);
-        self.check(name, angle, Ok)
+        let angle = self.check(name, angle, Ok);
+        self.context.turns |= angle.is_some_and(|angle| angle != 0.0);
+        angle
     }
 
     /// An angle that may be left out.
@@ -205,7 +232,21 @@ impl Object<'_> {
     /// The angles of a column of a table, in the request's unit, one or more; the bound is in radians.
     pub fn angles(&mut self, name: &'static str, bound: Bound, most: usize) -> Option<Vec<f64>> {
         let unit = self.context.unit;
-        self.list(name, [1, most], "numbers", |element| bounded_angle(element, bound, unit))
+        let angles = self.list(name, [1, most], "numbers", |element| bounded_angle(element, bound, unit));
+        self.context.turns |= angles.iter().flatten().any(|angle| *angle != 0.0);
+        angles
+    }
+
+    /// A number, or the numbers of a column of a table, so many at least and at most.
+    pub fn number_or_entries(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<NumberOrList> {
+        match self.required(name)? {
+            Value::Number(_) => self.number(name, bound).map(NumberOrList::Number),
+            Value::Array(_) => self.entries(name, bound, counts).map(NumberOrList::List),
+            other => {
+                let detail = format!("must be a number or an array of numbers, got {}", kind_of(other));
+                self.check(name, Err(detail), Ok)
+            }
+        }
     }
 
     /// Rows of numbers, one or more, in each as many as there are in the list `along`, where there is one.
@@ -264,7 +305,7 @@ impl Object<'_> {
         let mut sound = true;
         for (index, choice) in chosen.iter().enumerate() {
             if chosen[..index].contains(choice) {
-                self.fault_of(&format!("{name}/{index}"), format!("{} is there twice", choices[*choice].0));
+                self.fault_of(&format!("{name}/{index}"), format!("{} is given twice", choices[*choice].0));
                 sound = false;
             }
         }
@@ -367,7 +408,8 @@ impl Object<'_> {
         let mut sound = true;
         for (index, pair) in numbers.windows(2).enumerate() {
             if pair[1] <= pair[0] {
-                let detail = format!("must be greater than the {} before it, got {}", pair[0], pair[1]);
+                let [before, got] = apart([pair[0], pair[1]]);
+                let detail = format!("must be greater than the {before} before it, got {got}");
                 self.fault_of(&format!("{name}/{}{field}", index + 1), detail);
                 sound = false;
             }
@@ -474,6 +516,11 @@ impl Object<'_> {
     /// Whether the object in the field is of this kind by its `type`, whatever else is wrong with it.
     pub fn is_of_kind(&self, name: &str, kind: &str) -> bool {
         self.map.get(name).is_some_and(|object| object["type"] == kind)
+    }
+
+    /// Whether an angle other than 0 was read so far.
+    pub fn turns(&self) -> bool {
+        self.context.turns
     }
 
     /// The unit of the request's angles; to be read before any angle.
@@ -599,7 +646,7 @@ fn whole(number: &Number) -> Option<usize> {
 
 fn bounded(value: &Value, bound: Bound) -> Result<f64, String> {
     let number = number(value)?;
-    if bound.admits(number) { Ok(number) } else { Err(format!("must be {bound}, got {}", shown(value))) }
+    if bound.admits(number) { Ok(number) } else { Err(bound.refusal(number)) }
 }
 
 fn bounded_angle(value: &Value, bound: Bound, unit: Option<AngleUnit>) -> Result<f64, String> {

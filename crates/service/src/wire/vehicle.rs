@@ -77,7 +77,7 @@ pub struct BallisticAerodynamics {
 }
 
 /// Coefficients by Mach number, smooth between the entries; beyond the first and the last their values hold. All lists have as many.
-/// Needs an atmosphere that has a temperature.
+/// Needs an atmosphere that has a speed of sound.
 // The numbers stand here for the schema; what flies is `core`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct MachTable {
@@ -101,7 +101,7 @@ pub struct MachTable {
 
 /// Coefficients by angle of attack and Mach number, smooth between the entries; beyond the first and the last their values hold.
 /// Of each coefficient a row for every angle of attack, with a number for every Mach number.
-/// Needs an atmosphere that has a temperature.
+/// Needs an atmosphere that has a speed of sound.
 // The numbers stand here for the schema; what flies is `core`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct AlphaMachTable {

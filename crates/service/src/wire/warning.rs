@@ -1,17 +1,20 @@
 //! What the user of a flight should know.
 
 use reentry::coordinates::UndefinedElements;
+use reentry::motion::LIFT_FADE_ANGLE;
+use reentry::plain::{Plain, apart, rounded};
 use reentry::trajectory::{self, Lookup, Trajectory};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::AngleUnit;
 use super::epoch::Instant;
-use super::planet::Planet;
+use super::heating::Heating;
+use super::planet::{Planet, PlanetModel};
 use super::scenario::SimulateRequest;
 use super::state::{Frame, State};
 use super::trajectory::Extras;
 use super::vehicle::Aerodynamics;
+use super::{Angle, AngleUnit};
 
 /// Something that the user should know.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -35,72 +38,104 @@ impl Warning {
     pub fn of(request: &SimulateRequest, flight: &Trajectory, extras: &Extras) -> Vec<Self> {
         let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
+        warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
+        warnings.extend(request.assumed.atmosphere.then(|| Self::thesis_atmosphere(request.planet.model)));
+        warnings.extend(Self::gas_of_earth(request));
         let later = request.events.iter().filter_map(|event| event.then.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
         let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
         if request.control.angle_of_attack.is_given() && !by_angle_of_attack {
-            let detail =
-                "control.angle_of_attack changes nothing: only the coefficients of an alpha_mach_table depend on it";
+            let detail = "control.angle_of_attack has no effect: only an alpha_mach_table depends on it";
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
         warnings.extend(Self::of_frame(&request.initial_state, request.epoch, &request.planet));
         if let Some(error) = extras.unverified {
-            let detail = format!("at a hundredth of its tolerance the flight cannot be finished: {error}");
+            let detail = format!("Verification failed: at a hundredth of its tolerance, {error}");
             warnings.push(Self::new("not_verified", &detail));
+        }
+        let relative_tolerance = request.solver.relative_tolerance;
+        if flight.end_time() > longest_within_a_metre(relative_tolerance) && !request.verify {
+            warnings.push(Self::long_flight(flight.end_time(), relative_tolerance));
         }
         warnings
     }
 
+    /// Angles were read in the default unit.
+    pub fn angle_unit_assumed() -> Self {
+        let detail =
+            "Angles were read as radians: angle_unit is absent. Set \"angle_unit\": \"deg\" for degrees, or \"rad\"";
+        Self::new("angle_unit_assumed", detail)
+    }
+
+    /// The default air is denser than the Earth's.
+    fn thesis_atmosphere(planet: PlanetModel) -> Self {
+        let remedy = match planet {
+            PlanetModel::Custom => "Set the \"atmosphere\" of the planet",
+            _ => "Set \"atmosphere\": {\"type\": \"us76\"}, or {\"type\": \"exponential\"} to keep it",
+        };
+        let detail = format!(
+            "Air is the thesis's exponential atmosphere of the Earth, the default: 1.548 kg/m³ at the ground, 26 % more than us76 \
+             (1.225 kg/m³). {remedy}"
+        );
+        Self::new("thesis_atmosphere", &detail)
+    }
+
+    /// Of another planet, what is the Earth's.
+    fn gas_of_earth(request: &SimulateRequest) -> Vec<Self> {
+        if request.planet.model != PlanetModel::Custom {
+            return Vec::new();
+        }
+        let of_air = request.atmosphere.of_earth().filter(|_| !request.assumed.atmosphere).map(str::to_owned);
+        let correlations = request.heating.iter().flat_map(Heating::of_air).map(|correlation| {
+            let remedy = match correlation {
+                "tauber_sutton" => "set \"radiative\": \"none\"",
+                _ => "give {\"type\": \"sutton_graves\", \"constant\": k} of the gas",
+            };
+            format!("Heat flux by {correlation} is that in the Earth's air: {remedy}")
+        });
+        of_air.into_iter().chain(correlations).map(|detail| Self::new("gas_of_earth", &detail)).collect()
+    }
+
+    /// The errors of the steps may have grown.
+    fn long_flight(end: f64, relative_tolerance: f64) -> Self {
+        let [hours, days] = [end / 3600.0, end / 86_400.0];
+        let length = if days < 2.0 { format!("{hours:.1} hours") } else { format!("{days:.1} days") };
+        let detail = format!(
+            "Flight lasts {length}: at a relative_tolerance of {} its end may be off by more than 1 m. \
+             Set \"verify\": true to get the error",
+            Plain(relative_tolerance)
+        );
+        Self::new("long_flight", &detail)
+    }
+
     /// The theories know no bank.
     pub fn bank_left_out() -> Self {
-        let detail = "the theory knows no bank: it takes the whole lift as upward, while the simulated flight banks";
+        let detail = "Theory has no bank: it takes all lift as upward, while the simulated flight banks";
         Self::new("bank_angle_left_out", detail)
     }
 
     /// The theories know no wind.
     pub fn wind_left_out() -> Self {
-        let detail =
-            "the theory knows no wind: its speed and angle are as in still air, while the simulated flight has wind";
+        let detail = "Theory has no wind: its speed and angle are for still air, while the simulated flight has wind";
         Self::new("wind_left_out", detail)
     }
 
     fn of_flight(warning: trajectory::Warning, unit: AngleUnit) -> Self {
-        match warning {
+        let (code, detail) = match warning {
             trajectory::Warning::LiftFadedNearVertical { time } => {
-                let detail = "the flight came within 0.001 rad of the vertical, where the bank angle is undefined; \
-                              lift fades out there";
-                Self { time: Some(time), ..Self::new("lift_faded_near_vertical", detail) }
+                let (angle, from) = (Angle(LIFT_FADE_ANGLE, unit), seconds(time));
+                let detail = format!(
+                    "Lift fades out within {angle} of the vertical, where the bank angle is undefined (from {from})"
+                );
+                ("lift_faded_near_vertical", detail)
             }
             trajectory::Warning::WindFadedNearPole { time } => {
                 let detail = "the wind fades out within 0.001 rad of a pole, where there is neither east nor north";
                 Self { time: Some(time), ..Self::new("wind_faded_near_pole", detail) }
             }
             trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
-                let (table, edge, holds) = match table {
-                    Lookup::Atmosphere => (
-                        "the atmosphere",
-                        format!("an altitude of {edge} m"),
-                        "the logarithm of the density goes on in a straight line",
-                    ),
-                    Lookup::Wind => ("the wind", format!("an altitude of {edge} m"), "the wind of the edge holds"),
-                    Lookup::Mach => {
-                        ("the aerodynamics", format!("a Mach number of {edge}"), "the coefficients of the edge hold")
-                    }
-                    Lookup::Radiation => {
-                        ("the radiation", format!("a speed of {edge} m/s"), "the value of f(V) at the edge holds")
-                    }
-                    Lookup::AngleOfAttack => (
-                        "the aerodynamics",
-                        format!("an angle of attack of {}", unit.from_radians(edge)),
-                        "the coefficients of the edge hold",
-                    ),
-                };
-                let end = if above { "ends" } else { "begins" };
-                let detail = format!(
-                    "the table of {table} {end} at {edge}; the flight leaves it at {time} s, at an altitude of {altitude} m, \
-                     and beyond {holds}"
-                );
-                Self { time: Some(time), ..Self::new("outside_table", &detail) }
+                let code = if table == Lookup::Us76 { "outside_model" } else { "outside_table" };
+                (code, outside(table, edge, above, unit, &format!("from {}, at {}", seconds(time), length(altitude))))
             }
             trajectory::Warning::OutsideRange {
                 correlation,
@@ -110,19 +145,20 @@ impl Warning {
                 range: [least, greatest],
                 time,
             } => {
-                let bounds = if greatest.is_finite() {
+                let [value, least, greatest] = apart([value, least, greatest]);
+                let bounds = if greatest.starts_with(char::is_numeric) {
                     format!("from {least} to {greatest} {unit}")
                 } else {
                     format!("from {least} {unit} on")
                 };
                 let detail = format!(
-                    "at the peak of its heat flux, at {time} s, the {quantity} is {value} {unit}; {correlation} was made for values {bounds}"
+                    "{correlation} is made for a {quantity} {bounds}: at its peak heat flux it is {value} {unit} (at {})",
+                    seconds(time)
                 );
-                Self { time: Some(time), ..Self::new("outside_range", &detail) }
+                ("outside_range", detail)
             }
             trajectory::Warning::PropellantSpent { time } => {
-                let detail = "the propellant was spent, and the thrust ended";
-                Self { time: Some(time), ..Self::new("propellant_spent", detail) }
+                ("propellant_spent", format!("Propellant is spent: the thrust ends (at {})", seconds(time)))
             }
             trajectory::Warning::ThrustWithoutDirection { event, time } => {
                 let detail = format!(
@@ -139,18 +175,19 @@ impl Warning {
             }
             trajectory::Warning::NoDirection { event, time } => {
                 let detail = format!(
-                    "the delta_v of event {event} changed nothing: at rest there is no velocity, and in vertical flight nothing normal, \
-                     along which it could act"
+                    "delta_v of event {event} has no effect (at {}): at rest there is no velocity, and in vertical flight no normal, to act along",
+                    seconds(time)
                 );
-                Self { time: Some(time), ..Self::new("no_direction", &detail) }
+                ("no_direction", detail)
             }
-        }
+        };
+        Self { time: Some(warning.time()), ..Self::new(code, &detail) }
     }
 
     /// Which orbital elements are conventions.
     pub fn of_undefined_elements(undefined: UndefinedElements) -> Vec<Self> {
-        let circular = "the orbit is circular: argument_of_periapsis is 0 and true_anomaly counts from the node";
-        let equatorial = "the orbit is equatorial: raan is 0 and argument_of_periapsis counts from the inertial x axis \
+        let circular = "Orbit is circular: argument_of_periapsis is 0 and true_anomaly counts from the node";
+        let equatorial = "Orbit is equatorial: raan is 0 and argument_of_periapsis counts from the inertial x axis \
                           in the direction of motion";
         let warnings = [
             undefined.circular.then(|| Self::new("circular_orbit", circular)),
@@ -161,8 +198,7 @@ impl Warning {
 
     /// There are no orbital elements.
     pub fn rectilinear() -> Self {
-        let detail = "the inertial motion is towards or away from the planet's centre, or so nearly that orbital elements \
-                      would not hold it: there are none";
+        let detail = "Orbit has no elements: the inertial motion is along the radius, or so nearly that elements would not hold it";
         Self::new("rectilinear_motion", detail)
     }
 
@@ -193,6 +229,66 @@ impl Warning {
     }
 }
 
+/// What a table or a model does outside its range.
+fn outside(table: Lookup, edge: f64, above: bool, unit: AngleUnit, since: &str) -> String {
+    let [ends, beyond] = if above { ["ends", "above"] } else { ["begins", "below"] };
+    match table {
+        Lookup::Atmosphere => {
+            let edge = length(edge);
+            format!(
+                "Atmosphere table {ends} at {edge}: {beyond} it the logarithm of the density goes on in a straight line ({since})"
+            )
+        }
+        Lookup::Us76 => {
+            let holds =
+                if above { "the density falls on with its scale height there" } else { "its lowest layer goes on" };
+            format!("Atmosphere us76 {ends} at {}: {beyond} it {holds} ({since})", length(edge))
+        }
+        Lookup::Wind => {
+            let edge = length(edge);
+            format!("Wind table {ends} at {edge}: its {edge} wind is used {beyond} it ({since})")
+        }
+        Lookup::Mach => {
+            let edge = Plain(edge);
+            format!("Aerodynamic table {ends} at Mach {edge}: its Mach {edge} values are used {beyond} it ({since})")
+        }
+        Lookup::Radiation => {
+            let edge = Plain(edge);
+            format!("Radiation table {ends} at {edge} m/s: its {edge} m/s value is used {beyond} it ({since})")
+        }
+        Lookup::AngleOfAttack => {
+            let edge = Angle(edge, unit);
+            format!(
+                "Aerodynamic table {ends} at an angle of attack of {edge}: its {edge} values are used {beyond} it ({since})"
+            )
+        }
+    }
+}
+
+/// A length or an altitude, m, for people: to four digits, in km from 1 km on.
+fn length(metres: f64) -> String {
+    if metres.abs() < 1000.0 {
+        format!("{} m", Plain(rounded(metres, 4)))
+    } else {
+        format!("{} km", Plain(rounded(metres / 1000.0, 4)))
+    }
+}
+
+/// A time, s, for people: to a tenth.
+fn seconds(time: f64) -> String {
+    format!("{} s", (time * 10.0).round() / 10.0)
+}
+
+/// The longest flight, s, that a tolerance keeps within 1 m: two hours with the default one, and longer with a finer one.
+///
+/// Measured on decays from circular orbits in `us76`: 1e-10 gives 1 m after 3 hours, 10 m after 3 days and 700 m after 20; 1e-12 0.04 m
+/// after 3 days and 1.3 m after 11; 1e-13 0.3 m after 20. `tests/verification.rs` holds flights to it.
+pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
+    const BY_DEFAULT: [f64; 2] = [7200.0, 1e-10];
+    let [longest, default] = BY_DEFAULT;
+    longest * (default / relative_tolerance).powf(0.8).max(1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use reentry::trajectory::{Lookup, Warning as CoreWarning};
@@ -206,34 +302,50 @@ mod tests {
                 Lookup::Atmosphere,
                 1e5,
                 true,
-                "the table of the atmosphere ends at an altitude of 100000 m; the flight leaves it at 1.5 s, at an altitude of \
-                 2000 m, and beyond the logarithm of the density goes on in a straight line",
+                "Atmosphere table ends at 100 km: above it the logarithm of the density goes on in a straight line (from 52.9 s, at 109.1 km)",
+            ),
+            (
+                Lookup::Us76,
+                1e6,
+                true,
+                "Atmosphere us76 ends at 1000 km: above it the density falls on with its scale height there (from 52.9 s, at 109.1 km)",
+            ),
+            (
+                Lookup::Us76,
+                -5e3,
+                false,
+                "Atmosphere us76 begins at -5 km: below it its lowest layer goes on (from 52.9 s, at 109.1 km)",
             ),
             (
                 Lookup::Wind,
                 -10.0,
                 false,
-                "the table of the wind begins at an altitude of -10 m; the flight leaves it at 1.5 s, at an altitude of 2000 m, \
-                 and beyond the wind of the edge holds",
+                "Wind table begins at -10 m: its -10 m wind is used below it (from 52.9 s, at 109.1 km)",
             ),
             (
                 Lookup::Mach,
-                0.5,
-                false,
-                "the table of the aerodynamics begins at a Mach number of 0.5; the flight leaves it at 1.5 s, at an altitude of \
-                 2000 m, and beyond the coefficients of the edge hold",
+                25.0,
+                true,
+                "Aerodynamic table ends at Mach 25: its Mach 25 values are used above it (from 52.9 s, at 109.1 km)",
+            ),
+            (
+                Lookup::Radiation,
+                16e3,
+                true,
+                "Radiation table ends at 16000 m/s: its 16000 m/s value is used above it (from 52.9 s, at 109.1 km)",
             ),
             (
                 Lookup::AngleOfAttack,
                 std::f64::consts::FRAC_PI_2,
                 true,
-                "the table of the aerodynamics ends at an angle of attack of 90; the flight leaves it at 1.5 s, at an altitude of \
-                 2000 m, and beyond the coefficients of the edge hold",
+                "Aerodynamic table ends at an angle of attack of 90°: its 90° values are used above it (from 52.9 s, at 109.1 km)",
             ),
         ] {
-            let warning = CoreWarning::OutsideTable { table, time: 1.5, altitude: 2000.0, edge, above };
+            let time = 52.916_530_598_660_5;
+            let warning = CoreWarning::OutsideTable { table, time, altitude: 109_054.394_121_244_55, edge, above };
             let warning = Warning::of_flight(warning, AngleUnit::Deg);
-            assert_eq!((warning.code, warning.time, warning.detail.as_str()), ("outside_table", Some(1.5), expected));
+            let code = if table == Lookup::Us76 { "outside_model" } else { "outside_table" };
+            assert_eq!((warning.code, warning.time, warning.detail.as_str()), (code, Some(time), expected));
         }
     }
 }

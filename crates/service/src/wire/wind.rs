@@ -30,11 +30,17 @@ pub struct ConstantWind {
     #[serde(rename = "type")]
     pub kind: &'static str,
     /// Towards the east, m/s.
-    #[schema(minimum = -1e4, maximum = 1e4)]
+    #[schema(required = false, minimum = -1e4, maximum = 1e4)]
     pub east: f64,
     /// Towards the north, m/s.
-    #[schema(minimum = -1e4, maximum = 1e4)]
+    #[schema(required = false, minimum = -1e4, maximum = 1e4)]
     pub north: f64,
+    /// m/s; with `from` in place of `east` and `north`.
+    #[schema(required = false, value_type = f64, minimum = 0, maximum = 1e4)]
+    pub speed: Option<f64>,
+    /// The compass direction from which the wind blows, clockwise from north: 0 is a north wind, 270° a west wind.
+    #[schema(required = false, value_type = f64)]
+    pub from: Option<f64>,
 }
 
 /// Wind by altitude, smooth between the entries; beyond the first and the last their wind holds. All lists have as many.
@@ -48,11 +54,17 @@ pub struct TableWind {
     #[schema(min_items = 1, max_items = 10_000)]
     pub altitude: Vec<f64>,
     /// Towards the east, m/s.
-    #[schema(min_items = 1, max_items = 10_000)]
+    #[schema(required = false, min_items = 1, max_items = 10_000)]
     pub east: Vec<f64>,
     /// Towards the north, m/s.
-    #[schema(min_items = 1, max_items = 10_000)]
+    #[schema(required = false, min_items = 1, max_items = 10_000)]
     pub north: Vec<f64>,
+    /// m/s; with `from` in place of `east` and `north`, which are what is interpolated.
+    #[schema(required = false, value_type = Vec<f64>, min_items = 1, max_items = 10_000)]
+    pub speed: Option<Vec<f64>>,
+    /// The compass directions from which the wind blows, clockwise from north, within ±2π (±360°).
+    #[schema(required = false, value_type = Vec<f64>, min_items = 1, max_items = 10_000)]
+    pub from: Option<Vec<f64>>,
     /// The same, for the core.
     #[serde(skip)]
     #[schema(ignore)]
@@ -97,9 +109,20 @@ impl Wind {
 
 impl ConstantWind {
     fn read(object: &mut Object) -> Option<Self> {
-        let east = object.number("east", Bound::WIND);
-        let north = object.number("north", Bound::WIND);
-        Some(Self { kind: "constant", east: east?, north: north? })
+        match Way::of(object)? {
+            Way::Components => {
+                let east = object.number("east", Bound::WIND);
+                let north = object.number("north", Bound::WIND);
+                Some(Self { kind: "constant", east: east?, north: north?, speed: None, from: None })
+            }
+            Way::SpeedAndDirection => {
+                let speed = object.number("speed", Bound::WIND_SPEED);
+                let from = object.angle("from", Bound::TURN);
+                let (speed, from, unit) = (speed?, from?, object.unit()?);
+                let [east, north] = components(speed, unit.to_radians(from));
+                Some(Self { kind: "constant", east, north, speed: Some(speed), from: Some(from) })
+            }
+        }
     }
 }
 
@@ -107,14 +130,54 @@ impl TableWind {
     fn read(object: &mut Object) -> Option<Self> {
         let altitude = object.entries("altitude", Bound::DISTANCE, [1, MOST_ENTRIES]);
         let altitude = altitude.filter(|altitude| object.ascending("altitude", "", altitude));
-        let east = object.entries("east", Bound::WIND, [1, MOST_ENTRIES]);
-        let north = object.entries("north", Bound::WIND, [1, MOST_ENTRIES]);
-        let sound = object.equally_long("altitude", &["east", "north"]);
-        let (altitude, east, north) = (altitude?, east?, north?);
-        if !sound {
-            return None;
-        }
+        let (east, north, speed, from) = match Way::of(object)? {
+            Way::Components => {
+                let east = object.entries("east", Bound::WIND, [1, MOST_ENTRIES]);
+                let north = object.entries("north", Bound::WIND, [1, MOST_ENTRIES]);
+                if !object.equally_long("altitude", &["east", "north"]) {
+                    return None;
+                }
+                (east?, north?, None, None)
+            }
+            Way::SpeedAndDirection => {
+                let speed = object.entries("speed", Bound::WIND_SPEED, [1, MOST_ENTRIES]);
+                let from = object.angles("from", Bound::TURN, MOST_ENTRIES);
+                if !object.equally_long("altitude", &["speed", "from"]) {
+                    return None;
+                }
+                let (speed, from, unit) = (speed?, from?, object.unit()?);
+                let both = speed.iter().zip(&from).map(|(speed, from)| components(*speed, unit.to_radians(*from)));
+                let (east, north) = both.map(|[east, north]| (east, north)).unzip();
+                (east, north, Some(speed), Some(from))
+            }
+        };
+        let altitude = altitude?;
         let core = Arc::new(object.sound(CoreTable::new(&altitude, &east, &north))?);
-        Some(Self { kind: "table", altitude, east, north, core })
+        Some(Self { kind: "table", altitude, east, north, speed, from, core })
     }
+}
+
+/// How a wind is given.
+#[derive(Clone, Copy)]
+enum Way {
+    Components,
+    SpeedAndDirection,
+}
+
+impl Way {
+    /// That of a wind, by the fields that it has; of none of them, the components are asked for.
+    fn of(object: &mut Object) -> Option<Self> {
+        let [components, other] =
+            [["east", "north"], ["speed", "from"]].map(|names| names.map(|name| object.has(name)).contains(&true));
+        match (components, other) {
+            (true, true) => object.fault("must have east and north, or speed and from, got some of both"),
+            (false, true) => Some(Self::SpeedAndDirection),
+            (_, false) => Some(Self::Components),
+        }
+    }
+}
+
+/// The components to the east and to the north of a wind from a direction, rad.
+fn components(speed: f64, from: f64) -> [f64; 2] {
+    [-speed * from.sin(), -speed * from.cos()]
 }

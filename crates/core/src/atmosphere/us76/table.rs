@@ -7,9 +7,17 @@ use super::gases::{self, Integrals};
 use super::{GAS_CONSTANT, GRAVITY, MIXED_TOP, MOLECULAR_WEIGHT, TOP, geopotential};
 use crate::scalar::Scalar;
 
-/// H, m, and `dT_M/dH`, K/m, from there on (Table 4).
-const LAYERS: [(f64, f64); 7] =
-    [(0.0, -0.0065), (11e3, 0.0), (20e3, 0.001), (32e3, 0.0028), (47e3, 0.0), (51e3, -0.0028), (71e3, -0.002)];
+/// H, m, and `dT_M/dH`, K/m, from there on (Table 4); the first layer is the second, continued below -5 km.
+const LAYERS: [(f64, f64); 8] = [
+    (0.0, -0.0065),
+    (0.0, -0.0065),
+    (11e3, 0.0),
+    (20e3, 0.001),
+    (32e3, 0.0028),
+    (47e3, 0.0),
+    (51e3, -0.0028),
+    (71e3, -0.002),
+];
 /// T₀, K, and P₀, Pa (Table 2).
 const SEA_LEVEL: [f64; 2] = [288.15, 101_325.0];
 /// `T_M/T_b` under which no layer goes, where a trial stage looks far over its end.

@@ -12,8 +12,8 @@ export type Field =
   | { kind: 'vector'; label: string; unit: string }
   /** Numbers, of which several fields of the same `table` have as many: edited side by side. */
   | { kind: 'column'; label: string; unit?: string; isAngle?: true; table: string; choice?: string }
-  /** A list of numbers in a line. */
-  | { kind: 'numbers'; label: string; unit?: string; isAngle?: true; choice?: string }
+  /** A list of numbers in a line; with `orOne`, a single one is a number. */
+  | { kind: 'numbers'; label: string; unit?: string; isAngle?: true; choice?: string; orOne?: true }
   /** Rows of numbers. */
   | { kind: 'matrix'; label: string }
   /** Words of a list, each at most once. */
@@ -24,6 +24,8 @@ export type Field =
   | { kind: 'along'; label: string; words: Record<string, string> }
   /** Names in a line, apart by commas. */
   | { kind: 'names'; label: string; hint?: string }
+  /** A correlation of the convective heat flux by its name, or with the constant of a gas. */
+  | { kind: 'convective'; label: string }
   /** A thrust, or `"off"`. */
   | { kind: 'thrust'; label: string }
   | { kind: 'group'; label: string; schema: string; fields: Fields; isOptional?: string }
@@ -211,6 +213,9 @@ const ATMOSPHERE: Record<Schemas['Atmosphere']['type'], Kind> = {
       density: column('air', 'Density', 'kg/m³'),
       temperature: column('air', 'Temperature', 'K'),
       pressure: column('air', 'Pressure', 'Pa'),
+      speed_of_sound: { kind: 'numbers', label: 'Speeds of sound', unit: 'm/s' },
+      molar_mass: { kind: 'numbers', label: 'Molar mass', unit: 'kg/mol', orOne: true },
+      heat_capacity_ratio: { kind: 'numbers', label: 'Heat capacity ratio', orOne: true },
     } satisfies Of<Schemas['TableAtmosphere']>,
   },
   vacuum: { label: 'Vacuum', schema: 'Vacuum', fields: {} satisfies Of<Schemas['Vacuum']> },
@@ -220,7 +225,12 @@ const WIND: Record<Schemas['Wind']['type'], Kind> = {
   constant: {
     label: 'The same everywhere',
     schema: 'ConstantWind',
-    fields: { east: n('Towards the east', 'm/s'), north: n('Towards the north', 'm/s') } satisfies Of<Schemas['ConstantWind']>,
+    fields: {
+      east: n('Towards the east', 'm/s'),
+      north: n('Towards the north', 'm/s'),
+      speed: n('Speed', 'm/s'),
+      from: angle('From, clockwise from north'),
+    } satisfies Of<Schemas['ConstantWind']>,
   },
   table: {
     label: 'By altitude',
@@ -229,9 +239,21 @@ const WIND: Record<Schemas['Wind']['type'], Kind> = {
       altitude: column('wind', 'Altitude', 'm'),
       east: column('wind', 'East', 'm/s'),
       north: column('wind', 'North', 'm/s'),
+      speed: column('wind', 'Speed', 'm/s'),
+      from: { kind: 'column', label: 'From', isAngle: true, table: 'wind' },
     } satisfies Of<Schemas['TableWind']>,
   },
 };
+
+/** Sutton and Graves's correlation in a gas. */
+export const SUTTON_GRAVES = { constant: n('Constant', '√kg/m') } satisfies Of<Schemas['SuttonGraves']>;
+
+/** The correlations of the convective heat flux in air. */
+export const CONVECTIVE = {
+  sutton_graves: 'Sutton and Graves',
+  detra_kemp_riddell: 'Detra, Kemp and Riddell',
+  chapman: 'Chapman',
+} satisfies Record<Schemas['Convective'], string>;
 
 const AERODYNAMICS: Record<Schemas['Aerodynamics']['type'], Kind> = {
   constant: {
@@ -451,14 +473,7 @@ export const SECTIONS = {
     schema: 'Heating',
     isOptional: 'Compute heat fluxes (the vehicle needs a nose radius)',
     fields: {
-      convective: {
-        kind: 'words',
-        label: 'Convective',
-        words: { sutton_graves: 'Sutton and Graves', detra_kemp_riddell: 'Detra, Kemp and Riddell', chapman: 'Chapman' } satisfies Record<
-          Schemas['Convective'],
-          string
-        >,
-      },
+      convective: { kind: 'convective', label: 'Convective' },
       radiative: {
         kind: 'words',
         label: 'Radiative',

@@ -6,7 +6,7 @@ import type { Case, State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
-import { type Field, type Fields, type Kind, SCHEDULE, SECTIONS, THRUST } from './fields';
+import { CONVECTIVE, type Field, type Fields, type Kind, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
 import { exchanged, forget } from './held';
 import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
 import type { Property } from './schema';
@@ -137,6 +137,8 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
           />
         </Line>
       );
+    case 'convective':
+      return <Convective label={field.label} path={path} property={property} />;
     case 'thrust':
       return <Thrust label={field.label} path={path} property={property} />;
     case 'list':
@@ -261,13 +263,23 @@ function Control({ field, path, property, name }: ItemProps) {
         <RowsInput
           {...input}
           rows={1}
-          value={Array.isArray(value) && value.length > 0 ? [isAngle(field) ? value.map(angles.value.shown) : value] : []}
-          onValue={(rows) => put(path, isAngle(field) ? rows.flat().map(angles.value.stored) : rows.flat())}
+          value={listed(value).length > 0 ? [isAngle(field) ? listed(value).map(angles.value.shown) : listed(value)] : []}
+          onValue={(rows) => put(path, unlisted(isAngle(field) ? rows.flat().map(angles.value.stored) : rows.flat(), field.orOne === true))}
         />
       );
     default:
       return null;
   }
+}
+
+/** The numbers of a list, or one that stands alone. */
+function listed(value: unknown): unknown[] {
+  return Array.isArray(value) ? value : value === undefined ? [] : [value];
+}
+
+/** A list; where a single number may stand alone it does, and without a number there is nothing. */
+function unlisted(numbers: unknown[], orOne: boolean): unknown {
+  return orOne && numbers.length < 2 ? numbers[0] : numbers;
 }
 
 function Words({
@@ -414,7 +426,7 @@ function Members({ fields, schema: name, path }: { fields: Fields; schema: strin
     <>
       {Object.entries(fields).map(([key, field]) => {
         if (done.has(key) || !isNeeded(key)) return null;
-        const together = groupOf(fields, field);
+        const together = groupOf(fields, field).filter(isNeeded);
         for (const other of together) done.add(other);
         if (field.kind === 'column') return <Table key={key} fields={fields} names={together} path={path} />;
         if ('choice' in field && field.choice)
@@ -435,6 +447,12 @@ function isAsked(fields: Fields, path: Path): (name: string) => boolean {
   if (fields === SECTIONS.vehicle.fields) {
     const isBallistic = get(own, ['aerodynamics', 'type']) === 'ballistic';
     return (name) => name !== 'reference_area' || !isBallistic || own?.[name] !== undefined;
+  }
+  // A wind is given by its components, or by its speed and direction.
+  if (fields.east && fields.speed) {
+    const given = (names: string[]) => names.some((name) => own?.[name] !== undefined);
+    if (given(['speed', 'from'])) return (name) => !['east', 'north'].includes(name) || own?.[name] !== undefined;
+    if (fields.altitude || given(['east', 'north'])) return (name) => !['speed', 'from'].includes(name);
   }
   return () => true;
 }
@@ -602,6 +620,32 @@ function Command({ label, path, property }: { label: string; path: Path; propert
         {label} by a schedule
       </label>
       {isSchedule && <Members fields={SCHEDULE.fields} schema={SCHEDULE.schema} path={path} />}
+    </div>
+  );
+}
+
+/** A correlation for air, or the constant of another gas. */
+function Convective({ label, path, property }: { label: string; path: Path; property?: Property | undefined }) {
+  const value = get(draft.value, path);
+  const isOfGas = typeof value === 'object' && value !== null;
+  const change = (next: string) => put(path, next === 'gas' ? { type: 'sutton_graves' } : next);
+  return (
+    <div class="group">
+      <Line label={label} path={path} property={property}>
+        <select
+          {...select(path)}
+          value={isOfGas ? 'gas' : String(value ?? property?.default ?? '')}
+          onChange={(event) => change(event.currentTarget.value)}
+        >
+          {Object.entries(CONVECTIVE).map(([name, title]) => (
+            <option key={name} value={name}>
+              {title}
+            </option>
+          ))}
+          <option value="gas">Sutton and Graves, another gas</option>
+        </select>
+      </Line>
+      {isOfGas && <Members fields={SUTTON_GRAVES} schema="SuttonGraves" path={path} />}
     </div>
   );
 }
