@@ -137,7 +137,8 @@ pub fn convert(text: &[u8]) -> bool {
     let answer = strict(&bytes, &tree);
     valid(&CONVERT, &answer, &tree);
     if let Some(case) = answer.get("case") {
-        assert_eq!(strict(&good(converted(case.clone()), &tree), &tree), answer, "{tree}");
+        let again = strict(&good(converted(case.clone()), &tree), &tree);
+        assert_eq!(again, without_warnings_of_defaults(answer.clone()), "{tree}");
     }
     for (kind, tolerance) in KINDS {
         let [place, motion] =

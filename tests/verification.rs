@@ -8,7 +8,7 @@ use reentry::coordinates::{OrbitShape, OrbitalElements};
 use reentry::event::{Condition, Direction, Quantity};
 use reentry::simulate::SimulationError;
 use reentry::verification::{Verification, verify};
-use reentry::{Atmosphere, Case, FlightPath, Scenario, Solver, Stop};
+use reentry::{Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop};
 
 use crate::check::{near, relative};
 use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, vehicle, with_tolerance};
@@ -41,7 +41,7 @@ fn the_distance_from_the_finer_flight_is_the_error() {
 
 /// A vehicle of 1000 kg and 11 m² of drag area in standard air, from an orbit with these altitudes, m, from its highest place on.
 fn from_orbit(apoapsis: f64, periapsis: f64, lift_coefficient: f64, relative_tolerance: f64) -> Case {
-    let planet = target_2().planet;
+    let planet = Planet::EARTH_WGS84;
     let [apoapsis, periapsis] = [apoapsis, periapsis].map(|altitude| planet.equatorial_radius() + altitude);
     let semi_major_axis = 0.5 * (apoapsis + periapsis);
     let elements = OrbitalElements {
@@ -55,6 +55,7 @@ fn from_orbit(apoapsis: f64, periapsis: f64, lift_coefficient: f64, relative_tol
     let inertial = elements.to_inertial(planet.gravitational_parameter);
     with_tolerance(
         Case {
+            planet,
             atmosphere: Atmosphere::Us76,
             vehicle: vehicle(1000.0, 5.0, lift_coefficient, 2.2),
             initial_state: inertial.to_planet_fixed(&planet, 0.0),

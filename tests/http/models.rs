@@ -210,7 +210,11 @@ async fn faults_of_columns_are_named() {
         (json!({"columns": []}), "/output/columns", "must have at least 1 entry, got 0"),
         (json!({"columns": vec!["time"; 45]}), "/output/columns", "must have at most 44 entries, got 45"),
         (json!({"columns": "time"}), "/output/columns", "must be an array of names, got a string"),
-        (json!({"columns": ["time"], "trajectory": false}), "/output/columns", "no trajectory"),
+        (
+            json!({"columns": ["time"], "trajectory": false}),
+            "/output/columns",
+            "must not be given together with \"trajectory\": false",
+        ),
         (json!({"columns": ["time"], "count": 2, "interval": 1}), "/output", "must have exactly one of"),
         (
             json!({"columns": ["time", "thrust"]}),

@@ -31,7 +31,7 @@ use crate::wire::scenario::Output;
 pub struct Document;
 
 /// Fields of which exactly one is given, by the name of their object.
-const ALTERNATIVES: [(&str, &[&str]); 8] = [
+const ALTERNATIVES: [(&str, &[&str]); 10] = [
     ("PlanetRelative", &["radius", "altitude"]),
     ("PlanetRelative", &["heading", "azimuth"]),
     ("OrbitalElements", &["semi_major_axis", "semi_latus_rectum"]),

@@ -115,9 +115,11 @@ impl Heating {
             ("chapman", ConvectiveFlux::OfAir(Convective::Chapman)),
         ];
         object.fill("convective", json!("sutton_graves"));
-        let convective = object.choice_or_object("convective", &convective, |object| {
-            SuttonGraves::read(object).map(ConvectiveFlux::OfGas)
-        });
+        let convective = if object.has_object("convective") {
+            object.object("convective", SuttonGraves::read).map(ConvectiveFlux::OfGas)
+        } else {
+            object.choice("convective", &convective)
+        };
         let radiative = [("none", Radiative::None), ("tauber_sutton", Radiative::TauberSutton)];
         let radiative = object.choice_or("radiative", &radiative, "none");
         let emissivity = object.number_or("emissivity", Bound::EMISSIVITY, 0.85);

@@ -1,7 +1,7 @@
 //! What the user of a flight should know.
 
 use reentry::coordinates::UndefinedElements;
-use reentry::motion::LIFT_FADE_ANGLE;
+use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use reentry::plain::{Plain, apart, rounded};
 use reentry::trajectory::{self, Lookup, Trajectory};
 use serde::Serialize;
@@ -130,8 +130,11 @@ impl Warning {
                 ("lift_faded_near_vertical", detail)
             }
             trajectory::Warning::WindFadedNearPole { time } => {
-                let detail = "the wind fades out within 0.001 rad of a pole, where there is neither east nor north";
-                Self { time: Some(time), ..Self::new("wind_faded_near_pole", detail) }
+                let (angle, from) = (Angle(WIND_FADE_ANGLE, unit), seconds(time));
+                let detail = format!(
+                    "Wind fades out within {angle} of a pole, where there is neither east nor north (from {from})"
+                );
+                ("wind_faded_near_pole", detail)
             }
             trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
                 let code = if table == Lookup::Us76 { "outside_model" } else { "outside_table" };
@@ -162,20 +165,23 @@ impl Warning {
             }
             trajectory::Warning::ThrustWithoutDirection { event, time } => {
                 let detail = format!(
-                    "the thrust of event {event} has no direction where it is switched on: at rest there is no velocity, and in vertical \
-                     flight nothing level, along which it could act; it acts as soon as there is"
+                    "Thrust of event {event} has no direction (at {}): at rest there is no velocity, and in vertical flight nothing \
+                     level, to act along; it acts as soon as there is",
+                    seconds(time)
                 );
-                Self { time: Some(time), ..Self::new("no_direction", &detail) }
+                ("no_direction", detail)
             }
             trajectory::Warning::NotDeployed { event, parachute, time } => {
                 let detail = format!(
-                    "event {event} releases the parachute of event {parachute}, which is not deployed at that time"
+                    "Release of event {event} has no effect (at {}): the parachute of event {parachute} is not deployed",
+                    seconds(time)
                 );
-                Self { time: Some(time), ..Self::new("not_deployed", &detail) }
+                ("not_deployed", detail)
             }
             trajectory::Warning::NoDirection { event, time } => {
                 let detail = format!(
-                    "delta_v of event {event} has no effect (at {}): at rest there is no velocity, and in vertical flight no normal, to act along",
+                    "Impulse of event {event} has no effect (at {}): at rest there is no velocity, and in vertical flight nothing \
+                     level, to act along",
                     seconds(time)
                 );
                 ("no_direction", detail)
@@ -213,14 +219,14 @@ impl Warning {
                     "the Earth's equator and celestial intermediate origin of date"
                 };
                 let detail = format!(
-                    "frame date was taken: {turned}; frame selects teme for vectors of SGP4 and gcrf for J2000, which in 2026 lie up to \
-                     38 km and 16 km from that origin on the ground"
+                    "Inertial frame is date: {turned}. Set \"frame\" to teme for vectors of SGP4 or gcrf for J2000, which in 2026 lie up to \
+                     38 km and 16 km from it on the ground"
                 );
                 Self::new("inertial_frame_of_date", &detail)
             }
             Frame::Teme | Frame::Gcrf => {
                 let detail = format!(
-                    "frame {} was taken with polar motion and UT1-UTC left out: at most 18 m and 0.9 s, which is 420 m on the equator",
+                    "Inertial frame is {}, without polar motion and UT1-UTC: at most 18 m and 0.9 s, which is 420 m on the equator",
                     frame.name()
                 );
                 Self::new("earth_orientation_neglected", &detail)
