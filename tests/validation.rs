@@ -31,7 +31,7 @@ fn no_check_is_left_out() {
         // Three simulations of three cases, of which one does not tell the place; and a tenth case.
         (Group::CheckCases, 3 * 5 + 2),
         (Group::StandardAir, 8),
-        (Group::Frames, 9),
+        (Group::Frames, 11),
         (Group::Flights, 9),
     ] {
         let found = validation.checks.iter().filter(|check| check.group == group);
