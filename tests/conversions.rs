@@ -12,7 +12,7 @@ use reentry::coordinates::{
     teme_to_planet_fixed, true_anomaly,
 };
 use reentry::planet::Shape;
-use reentry_service::validation::cases::{ELEMENTS, GEODETIC, rows};
+use reentry_service::validation::cases::{EARTH_ROTATION, ELEMENTS, GEODETIC, rows};
 use reentry_service::wire::epoch::Instant;
 
 use crate::check::{angle, near, relative};
@@ -170,7 +170,7 @@ fn apart_on_the_ground(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
 
 #[test]
 fn the_earth_is_turned_as_erfa_turns_it() {
-    let rows: Vec<_> = rows(include_str!("cases/frames/earth_rotation.csv")).collect();
+    let rows: Vec<_> = rows(EARTH_ROTATION).collect();
     assert_eq!(rows.len(), 71 + 33 + 2);
     let mut worst = [0.0_f64; 3];
     for row in rows {

@@ -214,7 +214,7 @@ async fn the_echo_gives_the_same_answer() {
 #[tokio::test]
 async fn a_bank_angle_wind_and_the_frame_of_date_are_warned_of() {
     for kind in KINDS {
-        let answer = compare(&with(&flight(kind), "/solution", "shallow_glide")).await;
+        let answer = compare(&with(&with(&flight(kind), "/solution", "shallow_glide"), "/planet", json!({}))).await;
         let warnings = answer["warnings"].as_array().unwrap();
         let codes: Vec<_> = warnings.iter().map(|warning| warning["code"].as_str().unwrap()).collect();
         let inertial = kind == "eci" || kind == "orbital_elements";

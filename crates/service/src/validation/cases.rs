@@ -39,6 +39,9 @@ pub const GEODETIC: &str = include_str!("../../../../tests/cases/frames/geodetic
 /// Orbital elements and inertial vectors.
 pub const ELEMENTS: &str = include_str!("../../../../tests/cases/frames/classical_elements.csv");
 
+/// The rotation from celestial frames to the planet-fixed one.
+pub const EARTH_ROTATION: &str = include_str!("../../../../tests/cases/frames/earth_rotation.csv");
+
 /// Flights that were flown.
 pub const FLIGHTS: &str = include_str!("../../../../tests/cases/flights/flights.json");
 

@@ -1,4 +1,4 @@
-//! Coordinates and orbital elements beside those of other programs: of every table the greatest deviation.
+//! Coordinates, orbital elements and the rotation of the Earth beside those of other programs: of every table the greatest deviation.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use super::{Check, Expected, Group, Origin};
 use crate::wire::AngleUnit;
 
 pub(super) fn checks() -> Vec<Check> {
-    [places(), orbits()].concat()
+    [places(), orbits(), epochs()].concat()
 }
 
 fn places() -> Vec<Check> {
@@ -88,6 +88,44 @@ fn orbit(row: &[f64]) -> [f64; 6] {
         angles.map(|(name, known, defined)| turned(off(name, known)).abs() * defined).into_iter().fold(0.0, greater),
     ]
 }
+
+fn epochs() -> Vec<Check> {
+    let origin = Origin {
+        group: Group::Frames,
+        case: "106 epochs from 1900 to 2100".to_owned(),
+        source: "pyerfa 2.0.1.5: c2t06a and gmst82, without polar motion and with UT1 = UTC".to_owned(),
+        note: "The greatest deviation of all, of places on the equator and at the pole. Allowed: 10 m, for the terms of the nutation \
+               that are left out."
+            .to_owned(),
+    };
+    let metres = Expected::within(0.0, 10.0).rounding(1e-3);
+    let quantities = [("place in GCRF, on the surface", "m", metres), ("place in TEME, on the surface", "m", metres)];
+    let rows = cases::rows(cases::EARTH_ROTATION).map(|row| epoch(&row));
+    let got = rows.fold([0.0; 2], |greatest, row| std::array::from_fn(|i| greater(greatest[i], row[i])));
+    against(&origin, &quantities, got)
+}
+
+/// From a celestial frame to the planet-fixed one: how far the ends of the axes are off at most, in GCRF and in TEME.
+fn epoch(row: &[&str]) -> [f64; 2] {
+    let [utc, _, sidereal_time, of_gcrf @ ..] = row else { return [f64::NAN; 2] };
+    let of_gcrf: Vec<_> = of_gcrf.iter().map(|field| parsed(field)).collect();
+    let (sine, cosine) = parsed(sidereal_time).sin_cos();
+    let of_teme = [cosine, sine, 0.0, -sine, cosine, 0.0, 0.0, 0.0, 1.0];
+    [("gcrf", &of_gcrf[..]), ("teme", &of_teme[..])].map(|(frame, rotation)| {
+        let off = (0..3).map(|axis| {
+            let mut position = [0.0; 3];
+            position[axis] = SURFACE;
+            let state = json!({"type": "eci", "frame": frame, "position": position, "velocity": [0, 0, 0]});
+            let answer = super::convert(json!({"epoch": utc, "state": state}));
+            let known = [0, 1, 2].map(|i| rotation.get(3 * i + axis).map_or(f64::NAN, |part| part * SURFACE));
+            apart(vector(&answer["ecef"]["position"]), known)
+        });
+        off.fold(0.0, greater)
+    })
+}
+
+/// The equatorial radius of the Earth, m.
+const SURFACE: f64 = 6_378_137.0;
 
 fn convert(state: &Value) -> Value {
     super::convert(json!({"angle_unit": "deg", "state": state}))
