@@ -8,6 +8,8 @@ const OWN = {
     'A made-up capsule. Its angle of attack gives it lift, which the bank turns to the side and back by a schedule. It has no parachute and meets the ground at 90 m/s; the next example has parachutes.',
   deorbit:
     'A made-up capsule of the size of a Soyuz: a braking burn half a revolution before the landing, separation, parachutes. They open at once here, which makes their loads greater than those of real ones.',
+  sample_return:
+    'The vehicle and the entry state of Stardust (AIAA 2008-1198), with one drag coefficient and parachutes of about its sizes. The place of entry is assumed, so that it comes down in Utah. Its greatest load is to be compared with the 32.9 g that are published.',
 };
 const THESIS = ['target_1', 'target_2', 'impulse', 'shallow_glide', 'steep_glide', 'steep_ballistic', 'medium_glide_supercircular'];
 

@@ -44,12 +44,12 @@ describe('undo', () => {
     const shows = (value: string, name: string) =>
       expect.poll(async () => [await mass.inputValue(), await nameOf(page)]).toEqual([value, name]);
     await page.keyboard.press('Control+z');
-    await shows('750', 'TARGET case 2');
+    await shows('750', 'TARGET reference case 2');
     await undo.click();
-    await shows('700', 'TARGET case 2');
+    await shows('700', 'TARGET reference case 2');
     expect(await undo.isDisabled()).toBe(true);
     await page.keyboard.press('Control+Shift+z');
-    await shows('750', 'TARGET case 2');
+    await shows('750', 'TARGET reference case 2');
     await page.keyboard.press('Control+y');
     await shows('750', 'another');
     expect(await page.getByRole('button', { name: 'Redo' }).isDisabled()).toBe(true);
