@@ -5,7 +5,7 @@ const ROOT = new URL('../../../../', import.meta.url);
 /** Cases of the service's own, with what to know of them. */
 const OWN = {
   lifting_capsule:
-    'A made-up capsule. Its angle of attack gives it lift, which the bank turns to the side and back by a schedule. It has no parachute and meets the ground at 90 m/s; the next example has parachutes.',
+    'A made-up capsule. Its angle of attack gives it lift, which the bank turns to the side and back by a schedule. A drogue opens at 8 km within 1 s, the main parachute at 3 km within 8 s; it lands at 9 m/s, of which the wind has 5.',
   deorbit:
     'A made-up capsule of the size of a Soyuz: a braking burn half a revolution before the landing, separation, parachutes. They open at once here, which makes their loads greater than those of real ones.',
   sample_return:

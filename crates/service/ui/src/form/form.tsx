@@ -133,7 +133,12 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
             {...inputOf(path, true, property)}
             value={(value as string[] | undefined)?.join(', ')}
             placeholder={field.hint}
-            onValue={(names) => put(path, names?.split(',').map((name) => name.trim()))}
+            onValue={(names) =>
+              put(
+                path,
+                names?.split(',').map((name) => name.trim()),
+              )
+            }
           />
         </Line>
       );
