@@ -144,7 +144,7 @@ fn pad() -> Case {
 }
 
 fn ignition(force: f64) -> Effect {
-    let thrust = Thrust { along: Axis::Radial, force, specific_impulse: 250.0, propellant: Some(40.0) };
+    let thrust = Thrust { along: Axis::Radial, force, specific_impulse: Some(250.0), propellant: Some(40.0) };
     Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
 }
 
@@ -289,7 +289,7 @@ fn derivatives_pass_through_a_condition_on_the_heat_load() {
 /// The mass falls along a straight line of time while the engine burns.
 #[test]
 fn a_condition_on_the_mass_ends_a_burn() {
-    let thrust = Thrust { along: Axis::Velocity, force: -2e4, specific_impulse: 300.0, propellant: None };
+    let thrust = Thrust { along: Axis::Velocity, force: -2e4, specific_impulse: Some(300.0), propellant: None };
     let events = vec![
         event(rises(Quantity::Time, 5.0), Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }),
         event(falls(Quantity::Mass, 650.0), Effect { engine: Some(Engine::Off), ..Effect::default() }),
