@@ -502,6 +502,11 @@ async fn schema_and_service_agree_on_every_mutant_of_what_is_shown() {
     for (path, ..) in ENDPOINTS {
         for (name, request) in shown(path).into_iter().filter(|(name, _)| !name.ends_with("earth_jameson_text")) {
             for pointer in pointers(&request, "") {
+                // A parachute is released by its name, which the event that deploys it has: a schema does not see that.
+                let by_name = ["/then", "/deploy", "/deploy/name", "/release/0"];
+                if name == "lifting_capsule" && by_name.iter().any(|end| pointer.ends_with(end)) {
+                    continue;
+                }
                 for value in [json!(null), json!([]), json!("13")] {
                     let what = format!("{name} with {value} at {pointer}");
                     let request = with(&request, &pointer, value);

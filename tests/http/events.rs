@@ -402,8 +402,8 @@ async fn a_thrust_without_a_direction_is_warned_of_and_one_without_mass_flow_kee
     let detail = answer["warnings"][0]["detail"].as_str().unwrap();
     assert!(detail.starts_with("Thrust of event 0 has no direction (at "), "{detail}");
     assert!(answer["final_state"].get("mass").is_none(), "nothing changes the mass");
-    // From 120 km it falls in 20 s by g = 9.44 m/s² and 3000/5500 m/s² of thrust.
-    check::relative("speed", number(&answer["final_state"]["speed"]), 20.0 * (9.44 + 3000.0 / 5500.0), 3e-3);
+    // From 120 km it falls in 20 s by 9.44 m/s² of gravity less 0.03 m/s² of centrifugal relief, and by 3000/5500 m/s² of thrust.
+    check::relative("speed", number(&answer["final_state"]["speed"]), 20.0 * (9.41 + 3000.0 / 5500.0), 1e-3);
 }
 
 /// What is constant in inertial space has the components of inertial vectors, whatever the planet's angle is.
@@ -446,7 +446,7 @@ async fn a_parachute_fills_brakes_and_is_released() {
     assert_eq!(order(&answer), [0, 1, 2]);
     assert_eq!(codes(&answer), ["not_deployed"]);
     let detail = answer["warnings"][0]["detail"].as_str().unwrap();
-    assert!(detail.contains("event 2 releases") && detail.contains("event 0"), "{detail}");
+    assert!(detail.starts_with("Release of event 2 has no effect") && detail.contains("event 0"), "{detail}");
     assert_eq!(answer["case"]["events"][1]["then"]["deploy"], with(&main, "/delay", 0.0));
     // Under both drag areas together, 900 m² and 1.3 × 12 m².
     let sinks = f64::sqrt(2.0 * 5500.0 * 9.78 / (1.225 * (900.0 + 15.6)));

@@ -150,7 +150,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                     "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, mass, "
                 }
                 "/events/0/then/delta_v/along" | "/events/0/then/thrust/along" => {
-                    "must be one of velocity, radial, normal, got "
+                    "must be one of velocity, radial, normal, horizontal, got "
                 }
                 "/control/bank_angle/type" => "must be one of schedule, got ",
                 "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, got ",

@@ -221,7 +221,7 @@ async fn faults_of_columns_are_named() {
             "/output/columns/1",
             "thrust needs an event that switches a thrust on",
         ),
-        (json!({"columns": ["mach"]}), "/output/columns/0", "mach needs an atmosphere that has a temperature"),
+        (json!({"columns": ["mach"]}), "/output/columns/0", "mach needs an atmosphere that has a speed of sound"),
         (json!({"columns": ["time", "pressure"]}), "/output/columns/1", "an atmosphere that has a pressure"),
         (json!({"columns": ["time", "utc"]}), "/output/columns/1", "utc needs an epoch"),
     ] {

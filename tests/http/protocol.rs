@@ -251,7 +251,7 @@ async fn pages_of_other_origins_may_call_and_see_the_headers() {
 
 #[tokio::test]
 async fn answers_are_compressed_above_the_threshold_only() {
-    let service = Service::with(Config { compress_above: 4096, ..Config::default() });
+    let service = Service::with(Config { compress_above: 8192, ..Config::default() });
     for (count, large) in [(2, false), (1000, true)] {
         let body = with(&capsule(), "/output", json!({"count": count})).to_string();
         for encoding in ["gzip", "zstd"] {
