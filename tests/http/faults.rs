@@ -152,6 +152,9 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/events/0/then/delta_v/along" | "/events/0/then/thrust/along" => {
                     "must be one of velocity, radial, normal, horizontal, got "
                 }
+                "/events/0/then/delta_v/along/frame" | "/events/0/then/thrust/along/frame" => {
+                    "must be one of inertial, got "
+                }
                 "/control/bank_angle/type" => "must be one of schedule, got ",
                 "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, got ",
                 "/control/bank_angle/interpolation" => "must be one of linear, step, got ",
