@@ -116,7 +116,7 @@ impl<P: Scalar> Canopies<P> {
                     let (since, inflation_time) = (parachute.opens(deployed), parachute.inflation_time);
                     of_all.filling.push(Filling { full, since, inflation_time });
                 }
-                Inflation::Over => of_all.full = of_all.full + full,
+                Inflation::Over => of_all.full += full,
             }
         }
         let Self { full, filling } = &of_all;

@@ -141,7 +141,7 @@ fn legendre_series(function: impl Fn(f64) -> f64) -> [f64; POINTS] {
     series
 }
 
-/// The share of the value at a point of the quadrature in each term of the series: (k + ½) w P_k(x).
+/// The share of the value at a point of the quadrature in each term of the series: `(k + ½) w P_k(x)`.
 const SHARES: [[f64; POINTS]; POINTS / 2] = {
     let mut shares = [[0.0; POINTS]; POINTS / 2];
     let mut of_point = 0;

@@ -259,17 +259,22 @@ impl TableAtmosphere {
         let temperature = object.optional_entries("temperature", Bound::POSITIVE, [2, MOST_ENTRIES]);
         let pressure = object.optional_entries("pressure", Bound::POSITIVE, [2, MOST_ENTRIES]);
         let speed_of_sound = object.optional_entries("speed_of_sound", Bound::POSITIVE, [2, MOST_ENTRIES]);
-        let mut of_gas =
-            |name, bound| object.has(name).then(|| object.number_or_entries(name, bound, [2, MOST_ENTRIES]));
+        let mut of_gas = |name, bound| {
+            if object.has(name) { object.number_or_entries(name, bound, [2, MOST_ENTRIES]) } else { None }
+        };
         let molar_mass = of_gas("molar_mass", Bound::MOLAR_MASS);
         let heat_capacity_ratio = of_gas("heat_capacity_ratio", Bound::HEAT_CAPACITY_RATIO);
-        const LISTS: [&str; 6] =
-            ["density", "temperature", "pressure", "speed_of_sound", "molar_mass", "heat_capacity_ratio"];
-        let sound = object.equally_long("altitude", &LISTS) & Self::has_one_gas(object);
+        let lists = ["density", "temperature", "pressure", "speed_of_sound", "molar_mass", "heat_capacity_ratio"];
+        let sound = object.equally_long("altitude", &lists) & Self::has_one_gas(object);
         let (altitude, density) = (altitude?, density?);
-        let (molar_mass, heat_capacity_ratio) = (given(molar_mass)?, given(heat_capacity_ratio)?);
-        let optional = [("temperature", &temperature), ("pressure", &pressure), ("speed_of_sound", &speed_of_sound)];
-        let lost = optional.into_iter().any(|(name, list)| object.has(name) && list.is_none());
+        let optional = [
+            ("temperature", temperature.is_none()),
+            ("pressure", pressure.is_none()),
+            ("speed_of_sound", speed_of_sound.is_none()),
+            ("molar_mass", molar_mass.is_none()),
+            ("heat_capacity_ratio", heat_capacity_ratio.is_none()),
+        ];
+        let lost = optional.into_iter().any(|(name, is_missing)| is_missing && object.has(name));
         if lost || !sound {
             return None;
         }
@@ -328,13 +333,5 @@ impl TableAtmosphere {
             }
         }
         sound
-    }
-}
-
-/// What was read of a field that may be left out; none where it is at fault.
-fn given<T>(read: Option<Option<T>>) -> Option<Option<T>> {
-    match read {
-        Some(None) => None,
-        other => Some(other.flatten()),
     }
 }
