@@ -51,7 +51,7 @@ fn capsule() -> Case {
         vehicle: Vehicle { nose_radius: Some(1.0), ..vehicle(3000.0, 4.0, 0.0, 1.3) },
         initial_state: start.to_planet_fixed(),
         heating: Some(Heating {
-            convective: Convective::SuttonGraves,
+            convective: Convective::SUTTON_GRAVES,
             radiative: Radiative::TauberSutton,
             emissivity: 0.85,
         }),
