@@ -19,6 +19,7 @@ mod http;
 mod integrator;
 mod number_types;
 mod openapi;
+mod parachutes;
 mod phases;
 mod pitfalls;
 mod properties;

@@ -165,7 +165,11 @@ fn a_fast_inflation_tends_to_an_opening_at_once() {
     for inflation_time in [1e-2, 1e-4, 1e-6, 1e-9] {
         let flight = with(inflation_time);
         // For a third of the time the canopy is as good as not there: at 150 m/s.
-        assert!(miss(&flight, &at_once) < 200.0 * inflation_time + 1e-6, "{inflation_time}: {}", miss(&flight, &at_once));
+        assert!(
+            miss(&flight, &at_once) < 200.0 * inflation_time + 1e-6,
+            "{inflation_time}: {}",
+            miss(&flight, &at_once)
+        );
         let loads = [&flight, &at_once].map(|flight| flight.peaks().load_factor.value);
         // The instants are rounded to 9e-16 s, a part of 1e-6 of the shortest inflation.
         assert!(loads[0] <= loads[1] * (1.0 + 1e-6), "{inflation_time}: {loads:?}");
@@ -189,7 +193,8 @@ fn a_full_parachute_is_a_greater_drag_area() {
     let area = |drag_area: f64| Effect { reference_area: Some(drag_area / 1.2), ..Effect::default() };
     let by_area = areas.map(|(time, drag_area)| at(time, area(drag_area))).to_vec();
     for case in [capsule(), spherical(capsule())] {
-        let [one, other] = [&by_parachute, &by_area].map(|events| fly(&Case { events: events.clone(), ..case.clone() }));
+        let [one, other] =
+            [&by_parachute, &by_area].map(|events| fly(&Case { events: events.clone(), ..case.clone() }));
         assert!(miss(&one, &other) < 1e-6, "{} m", miss(&one, &other));
         let [one, other] = [one, other].map(|flight| flight.peaks().load_factor.value);
         relative("load", one, other, 1e-12);
@@ -199,7 +204,8 @@ fn a_full_parachute_is_a_greater_drag_area() {
 /// The drag area adds to m/β of a ballistic vehicle, whatever its mass becomes, and to the coefficients of a table.
 #[test]
 fn a_parachute_adds_to_every_kind_of_aerodynamics() {
-    let thrust = Thrust { along: Axis::Velocity, force: -4000.0, specific_impulse: Some(200.0), propellant: Some(10.0) };
+    let thrust =
+        Thrust { along: Axis::Velocity, force: -4000.0, specific_impulse: Some(200.0), propellant: Some(10.0) };
     let events = vec![
         at(2.0, deploy(Parachute { inflation_time: 4.0, ..DROGUE })),
         at(3.0, switch_on(thrust)),
@@ -325,7 +331,10 @@ fn faults_of_parachutes_name_their_place() {
     let unknown = faults(vec![at(1.0, deploy(DROGUE)), at(2.0, release(&[0, 1, 7]))]);
     let places = ["events.1.then.release.1", "events.1.then.release.2"];
     assert!(
-        unknown.iter().zip(places).all(|(fault, place)| matches!(fault, Fault::NoParachute { field, .. } if field == place))
+        unknown
+            .iter()
+            .zip(places)
+            .all(|(fault, place)| matches!(fault, Fault::NoParachute { field, .. } if field == place))
             && unknown.len() == 2,
         "{unknown:?}"
     );

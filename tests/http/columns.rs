@@ -113,7 +113,7 @@ async fn the_columns_of_the_orbit_are_in_the_frame_of_date() {
     // A planet that does not turn may be turned by an angle all the same.
     let mut state = with(&elements(8e6, 0.15, 51.6), "/sidereal_angle", json!(77));
     state.as_object_mut().unwrap().remove("sidereal_time");
-    let planet = json!({"model": "custom", "shape": "sphere", "equatorial_radius": 6e6, "rotation_rate": 0,
+    let planet = json!({"model": "custom", "shape": "sphere", "equatorial_radius": 6e6, "polar_radius": 6e6, "rotation_rate": 0,
         "gravitational_parameter": 4e14});
     let answer = fly(&with(&in_orbit(&state), "/planet", planet)).await;
     check::near("raan", number(&answer["trajectory"]["raan"][0]), 40.0, 1e-9);
