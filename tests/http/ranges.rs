@@ -102,6 +102,7 @@ fn unsound(answer: &Answer) -> Option<String> {
             }
             answer.to_string().contains("null").then(|| text.to_string())
         }
+        // A field is called inflation_time.
         StatusCode::UNPROCESSABLE_ENTITY if text.contains("NaN") || text.replace("inflation", "").contains("inf") => {
             Some(text.to_string())
         }

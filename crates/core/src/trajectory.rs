@@ -578,6 +578,7 @@ impl Trajectory {
             [along + TAU * ((near - along) / TAU).round(), across]
         });
         let sphere = planet.equatorial_radius();
+        let from = &self.flown.start.state.position;
         let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * sphere));
         let loads = forces.loads(time, state);
         let wall = forces.heating().zip(loads.heat_flux);
@@ -597,7 +598,8 @@ impl Trajectory {
             specific_energy: 0.5 * inertial.velocity.norm_squared() + planet.potential(&state.position),
             downrange,
             crossrange,
-            ground_range: self.great_circle.angle_to(&state.position) * sphere,
+            // By the place itself, from which it is exactly 0 away.
+            ground_range: from.cross(&state.position).norm().atan2(from.dot(&state.position)) * sphere,
             ground_distance: length * sphere,
             mass: self.flown.phases[phase].mass(time),
             thrust: self.flown.phases[phase].thrust.map_or(0.0, |thrust| thrust.force.abs()),
