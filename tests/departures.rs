@@ -148,7 +148,7 @@ fn ignition(force: f64) -> Effect {
     Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
 }
 
-/// A thrust of five weights lifts it; of less than one it does not. The reference is an independent integration: SciPy's DOP853 at 1e-12 of
+/// A thrust of five weights lifts it; of less than one it does not. The reference is an independent integration: `SciPy`'s DOP853 at 1e-12 of
 /// the same forces in ECEF coordinates.
 #[test]
 fn a_thrust_of_the_start_lifts_a_vehicle_off_its_pad() {

@@ -75,7 +75,7 @@ fn oblateness(latitude: f64) -> f64 {
     a - a * b / (b * latitude.cos()).hypot(a * latitude.sin())
 }
 
-/// An integration in other coordinates by another method (SciPy's DOP853) has the parachute open at 9.90 km, and at 12.34 km with
+/// An integration in other coordinates by another method (`SciPy`'s DOP853) has the parachute open at 9.90 km, and at 12.34 km with
 /// the speed of sound of air.
 #[test]
 fn a_parachute_at_mars_opens_at_the_mach_number_of_its_gas() {

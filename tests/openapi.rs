@@ -157,6 +157,7 @@ async fn schema_and_service_refuse_the_same_fields() {
 }
 
 #[tokio::test]
+#[expect(clippy::too_many_lines, reason = "a list")]
 async fn schema_and_service_refuse_the_same_numbers() {
     let mut agreement = Agreement::new();
     let gas = |of: Value| {

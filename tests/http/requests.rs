@@ -78,6 +78,7 @@ pub(crate) fn conversion(kind: &str) -> Value {
 }
 
 /// The flight with each of the other models, and what they are.
+#[expect(clippy::too_many_lines, reason = "a list")]
 pub(crate) fn models() -> Vec<(&'static str, Value)> {
     let flight = || with(&flight("geodetic"), "/atmosphere", json!({"type": "us76"}));
     let schedule = |against: &str| json!({"type": "schedule", "against": against, "at": [1, 20], "value": [0.1, -0.2], "interpolation": "step"});
