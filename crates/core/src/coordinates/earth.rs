@@ -67,7 +67,7 @@ pub fn teme_to_planet_fixed(days: f64) -> Rotation {
 /// r = R₃(ERA) R₃(-s) R₃(-E) R₂(d) R₃(E) r_GCRF,   X = sin d cos E,   Y = sin d sin E
 /// ```
 ///
-/// with the [pole](celestial_pole) X, Y, and with s = -XY/2 + 0.00381" t - 0.07257" t³, in centuries t, for the origin of the angle.
+/// with the pole X, Y, and with s = -XY/2 + 0.00381" t - 0.07257" t³, in centuries t, for the origin of the angle.
 ///
 /// # Reference
 /// IERS Conventions (2010), equations 5.6 to 5.8 and table 5.2d.
