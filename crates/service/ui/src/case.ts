@@ -57,6 +57,7 @@ const ANGLES = new Set([
   'true_anomaly',
   'mean_anomaly',
   'sidereal_angle',
+  'from',
   'bank_angle',
   'angle_of_attack',
 ]);
