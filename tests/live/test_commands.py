@@ -208,8 +208,8 @@ def test_a_list_of_cases_with_events_has_their_columns_and_a_case_without_them_f
     assert result.stderr.startswith(f'reentry: {path}: case 1 "TARGET reference case 1": Not a valid case: the request has 1 fault\n  /output/columns: ')
     rows = list(csv.reader(io.StringIO(result.stdout)))
     assert rows[0][0] == "case"
-    assert rows[0][-3:] == ["heat_load", "wall_temperature", "mass"]
-    masses = [float(row[-1]) for row in rows[1:] if row[0] == "2"]
+    assert rows[0][-5:] == ["heat_load", "wall_temperature", "mass", "ground_range", "ground_distance"]
+    masses = [float(row[-3]) for row in rows[1:] if row[0] == "2"]
     assert {row[0] for row in rows[1:]} == {"0", "2"}
     assert (masses[0], masses[-1]) == (7000.0, 2700.0)
 
