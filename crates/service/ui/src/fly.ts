@@ -53,9 +53,12 @@ export function start(): void {
 
 /** Takes the case of the address, if it has one; whether it has. */
 export async function opened(): Promise<boolean> {
-  if (location.hash === address) return address !== '';
-  address = location.hash;
-  const found = await fromFragment(address);
+  const { hash } = location;
+  if (hash === address) return address !== '';
+  const found = await fromFragment(hash);
+  // The reader may have gone on meanwhile.
+  if (location.hash !== hash) return true;
+  address = hash;
   if (found) take(found);
   return found !== null;
 }
@@ -64,11 +67,13 @@ export async function opened(): Promise<boolean> {
 export function open(tree: Case & { solution?: Solution }): void {
   const left = tidied(draft.peek());
   take(tree);
+  if (Object.keys(left).length === 0) return;
+  const next = tidied(draft.peek());
   addressed(async () => {
-    if (Object.keys(left).length === 0) return;
-    history.replaceState(null, '', await toFragment(left));
-    address = await toFragment(tidied(draft.peek()));
-    history.pushState(null, '', address);
+    const [from, to] = await Promise.all([left, next].map(toFragment));
+    replaceAddress(from as string);
+    history.pushState(null, '', to);
+    address = to as string;
   });
 }
 
@@ -96,12 +101,14 @@ function addressed(change: () => Promise<void>): void {
 
 function kept(): void {
   keep(tidied(draft.peek()));
-  addressed(async () => {
-    // The reader is on the way to another case.
-    if (location.hash !== address) return;
-    address = await toFragment(tidied(draft.peek()));
-    history.replaceState(null, '', address);
-  });
+  addressed(async () => replaceAddress(await toFragment(tidied(draft.peek()))));
+}
+
+/** Another address of the case that is there; not where the browser's Back or Forward went on, and its case is not opened yet. */
+function replaceAddress(fragment: string): void {
+  if (location.hash !== address) return;
+  history.replaceState(null, '', fragment);
+  address = fragment;
 }
 
 function want(): void {

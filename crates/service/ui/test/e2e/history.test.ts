@@ -38,18 +38,19 @@ describe('undo', () => {
     const page = await on(example('target_2'));
     const mass = field(page, '/vehicle/mass');
     const undo = page.getByRole('button', { name: 'Undo' });
+    const name = await nameOf(page);
     expect(await undo.isDisabled()).toBe(true);
     await mass.fill('750');
     await page.locator('#name').fill('another');
-    const shows = (value: string, name: string) =>
-      expect.poll(async () => [await mass.inputValue(), await nameOf(page)]).toEqual([value, name]);
+    const shows = (value: string, title: string) =>
+      expect.poll(async () => [await mass.inputValue(), await nameOf(page)]).toEqual([value, title]);
     await page.keyboard.press('Control+z');
-    await shows('750', 'TARGET reference case 2');
+    await shows('750', name);
     await undo.click();
-    await shows('700', 'TARGET reference case 2');
+    await shows('700', name);
     expect(await undo.isDisabled()).toBe(true);
     await page.keyboard.press('Control+Shift+z');
-    await shows('750', 'TARGET reference case 2');
+    await shows('750', name);
     await page.keyboard.press('Control+y');
     await shows('750', 'another');
     expect(await page.getByRole('button', { name: 'Redo' }).isDisabled()).toBe(true);

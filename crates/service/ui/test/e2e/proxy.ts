@@ -14,8 +14,6 @@ export interface Network {
   delay: number;
   /** What a POST is answered in place of the service, if anything. */
   refuse: () => Refusal | null;
-  /** The bytes of each answer to a POST, as they were sent, and when it was done, ms. */
-  answers: { path: string; bytes: number; at: number }[];
   stop(): Promise<void>;
 }
 
@@ -40,9 +38,7 @@ export async function networkTo(service: string): Promise<Network> {
         const body: Buffer[] = [];
         for await (const chunk of answer) body.push(chunk as Buffer);
         await half();
-        const bytes = Buffer.concat(body);
-        if (incoming.method === 'POST') network.answers.push({ path: incoming.url ?? '', bytes: bytes.length, at: performance.now() });
-        outgoing.writeHead(answer.statusCode ?? 502, answer.headers).end(bytes);
+        outgoing.writeHead(answer.statusCode ?? 502, answer.headers).end(Buffer.concat(body));
       },
     );
     onward.on('error', () => outgoing.writeHead(502).end());
@@ -53,7 +49,6 @@ export async function networkTo(service: string): Promise<Network> {
     address: `http://127.0.0.1:${(server.address() as AddressInfo).port}`,
     delay: 0,
     refuse: () => null,
-    answers: [],
     async stop() {
       server.closeAllConnections();
       await new Promise((resolve) => server.close(resolve));
