@@ -2,12 +2,13 @@
 
 use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::atomic::AtomicBool;
 
-use num_dual::Dual64;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
+use reentry::heating::{Convective, Heating, Radiative};
 use reentry::propulsion::{Axis, Impulse, Thrust};
 use reentry::sensitivity::sensitivities;
 use reentry::trajectory::Termination;
@@ -247,43 +248,39 @@ fn events_and_the_end_wait_for_other_events() {
     assert_eq!(flight.termination(), Termination::Condition(0));
 }
 
-/// Where the first event comes later as the mass varies, the second does as well.
-#[test]
-fn derivatives_pass_through_a_delay() {
-    let opens = Effect { reference_area: Some(2.0), ..Effect::default() };
-    let events = vec![mark(falls(Quantity::Altitude, 20e3)), event(Trigger::After { event: 0, delay: 4.0 }, opens)];
-    let case = with_tolerance(Case { events, ..target_2() }, 1e-13);
+/// The derivative of the time of flight by the mass, and the difference of two flights over that of their masses.
+fn slope_and_difference(case: &Case) -> [f64; 2] {
+    let case = with_tolerance(case.clone(), 1e-13);
     let of = |change: f64| {
         let mut case = case.clone();
         case.vehicle.mass *= 1.0 + change;
         fly(&case).end_time()
     };
-    let never = std::sync::atomic::AtomicBool::new(false);
-    let slope = sensitivities(&fly(&case), &never).unwrap().time.mass;
-    let difference = (of(1e-4) - of(-1e-4)) / (2e-4 * case.vehicle.mass);
-    // Of the second order in a change of 1e-4.
+    let slope = sensitivities(&fly(&case), &AtomicBool::new(false)).unwrap().time.mass;
+    [slope, (of(1e-4) - of(-1e-4)) / (2e-4 * case.vehicle.mass)]
+}
+
+/// Where the first event comes later as the mass varies, the second does as well.
+#[test]
+fn derivatives_pass_through_a_delay() {
+    let opens = Effect { reference_area: Some(2.0), ..Effect::default() };
+    let events = vec![mark(falls(Quantity::Altitude, 20e3)), event(Trigger::After { event: 0, delay: 4.0 }, opens)];
+    let [slope, difference] = slope_and_difference(&Case { events, ..target_2() });
+    // The difference is off by the square of the change of 1e-4.
     relative("slope", slope, difference, 1e-6);
 }
 
 /// The heat load is a quantity that the derivatives follow where a condition waits for it.
 #[test]
 fn derivatives_pass_through_a_condition_on_the_heat_load() {
-    use reentry::heating::{Convective, Heating, Radiative};
     let opens = Effect { reference_area: Some(2.0), ..Effect::default() };
     let mut case = target_2();
     case.vehicle.nose_radius = Some(0.5);
     case.heating = Some(Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.8 });
     let total = fly(&case).last().heat_load.unwrap();
     case.events = vec![event(rises(Quantity::HeatLoad, 0.5 * total), opens)];
-    let case = with_tolerance(case, 1e-13);
-    let of = |change: f64| {
-        let mut case = case.clone();
-        case.vehicle.mass *= 1.0 + change;
-        fly(&case).end_time()
-    };
-    let never = std::sync::atomic::AtomicBool::new(false);
-    let slope = sensitivities(&fly(&case), &never).unwrap().time.mass;
-    relative("slope", slope, (of(1e-4) - of(-1e-4)) / (2e-4 * case.vehicle.mass), 1e-6);
+    let [slope, difference] = slope_and_difference(&case);
+    relative("slope", slope, difference, 1e-6);
 }
 
 /// The mass falls along a straight line of time while the engine burns.
@@ -368,12 +365,4 @@ fn a_value_between_start_end_and_peak_is_met_at_every_tolerance() {
         })
         .unwrap();
     assert!(met.get() > 600 && failed.get() < 5, "{} met, {} flights failed", met.get(), failed.get());
-}
-
-/// A number and its rate, for the reader of this file: conditions compare both.
-#[test]
-fn a_condition_tells_how_far_a_quantity_is_before_its_value() {
-    let moving = Dual64::new(3.0, -2.0);
-    assert_eq!(falls(Quantity::Speed, 1.0).before(moving), Dual64::new(2.0, -2.0));
-    assert_eq!(rises(Quantity::Speed, 1.0).before(moving), Dual64::new(-2.0, 2.0));
 }
