@@ -62,8 +62,8 @@ export function Cards() {
   const figures = useComputed(() => (current.value ? figuresOf(current.value.flight, angleUnit.value) : [])).value;
   return (
     <dl class={problem.value ? 'cards stale' : 'cards'} aria-label="Figures of the flight">
-      {figures.map(({ label, unit, value, note }) => (
-        <div class="card" key={label}>
+      {figures.map(({ label, unit, value, note, parts }) => (
+        <div class={parts ? 'card wide' : 'card'} key={label}>
           <dt>{label}</dt>
           <dd>
             <span class="value" data-figure={label}>
@@ -72,6 +72,7 @@ export function Cards() {
             {unit}
           </dd>
           {note && <dd class="quiet">{note}</dd>}
+          {parts && <dd class="quiet">{parts}</dd>}
         </div>
       ))}
     </dl>

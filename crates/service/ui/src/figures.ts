@@ -1,3 +1,4 @@
+import type { Answer } from './api';
 import { endOf, type Flight, type Numbers } from './flight';
 import { type AngleUnit, type Name, QUANTITIES, scaleOf, unitOf } from './quantities';
 
@@ -9,6 +10,8 @@ export interface Figure {
   value: number | string;
   /** Where and when, for people. */
   note?: string;
+  /** Of a peak, those of the parts of the flight between events. */
+  parts?: string;
 }
 
 const PEAKS = ['load_factor', 'deceleration', 'dynamic_pressure', 'mach', 'heat_flux', 'heat_load', 'wall_temperature'] as const;
@@ -33,6 +36,7 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
         unit,
         value: peak.value * scale,
         ...(name === 'heat_load' ? {} : { note: whereOf(peak) }),
+        ...(name === 'load_factor' ? partsOf(answer) : {}),
       },
     ];
   });
@@ -48,6 +52,21 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
       ? { label: 'Ground range', unit: 'km', value: (final.ground_range ?? Number.NaN) / 1e3 }
       : { label: 'Downrange', unit: 'km', value: final.downrange / 1e3 },
   ];
+}
+
+/** A peak below this share of the greatest is not worth a word. */
+const SHARE = 1 / 3;
+
+/** The peak loads of the parts of a flight, so that the opening of a parachute does not hide that of the entry. */
+function partsOf({ peaks, phases, events }: Answer): { parts?: string } {
+  const told = (phases ?? []).filter((phase) => phase.peaks.load_factor.value >= SHARE * peaks.load_factor.value);
+  if (told.length < 2) return {};
+  const from = (origin: (typeof told)[number]['from']) => {
+    if (!origin) return 'at first';
+    const name = origin.name ?? events?.find(({ index }) => index === origin.index)?.name ?? `event ${origin.index + 1}`;
+    return origin.burnout ? `after burnout of ${name}` : `after ${name}`;
+  };
+  return { parts: told.map((phase) => `${number(phase.peaks.load_factor.value, 3)} g ${from(phase.from)}`).join(' · ') };
 }
 
 function whereOf(peak: { time: number; altitude: number }): string {

@@ -76,6 +76,31 @@ describe('a flight', () => {
     ]);
   });
 
+  it('tells the peak loads of its parts, but for those that do not matter', () => {
+    const phase = (from: object | null, value: number) => ({
+      from,
+      since: 0,
+      until: 1,
+      peaks: { load_factor: { value, time: 0, altitude: 0 } },
+    });
+    const parts = (phases: object[]) => {
+      const peaks = { ...ANSWER.peaks, load_factor: { value: 6.9, time: 50, altitude: 4e4 } };
+      const flown = flightOf({ ...ANSWER, peaks, phases } as unknown as Answer);
+      return figuresOf(flown, 'deg').find(({ label }) => label === 'Peak load factor')?.parts;
+    };
+    expect(
+      parts([
+        phase(null, 4.04),
+        phase({ index: 0, name: 'burn', burnout: true }, 0.1),
+        phase({ index: 1, name: 'main parachute' }, 6.8756),
+      ]),
+    ).toBe('4.04 g at first · 6.88 g after main parachute');
+    expect(parts([phase({ index: 2, burnout: true }, 4), phase({ index: 2 }, 6.9)])).toBe(
+      '4 g after burnout of event 3 · 6.9 g after event 3',
+    );
+    expect(parts([phase(null, 6.9), phase({ index: 0 }, 1)])).toBeUndefined();
+  });
+
   it('that stops above the ground has no impact', () => {
     const stopped = {
       ...ANSWER,
