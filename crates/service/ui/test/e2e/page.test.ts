@@ -75,6 +75,8 @@ it('every example downloads in every format', async () => {
       expect(download.suggestedFilename()).toMatch(new RegExp(`\\.${format}$`, 'i'));
       expect(await download.failure()).toBeNull();
       await page.getByText(`${format.toUpperCase()} saved`).waitFor();
+      // Chromium drops downloads that a page starts too fast, one after the other.
+      await page.waitForTimeout(150);
     }
   }
   await page.close();
