@@ -70,10 +70,10 @@ export function open(tree: Case & { solution?: Solution }): void {
   if (Object.keys(left).length === 0) return;
   const next = tidied(draft.peek());
   addressed(async () => {
-    const [from, to] = await Promise.all([left, next].map(toFragment));
-    replaceAddress(from as string);
-    history.pushState(null, '', to);
-    address = to as string;
+    await replaceAddress(left);
+    const fragment = await toFragment(next);
+    history.pushState(null, '', fragment);
+    address = fragment;
   });
 }
 
@@ -101,12 +101,14 @@ function addressed(change: () => Promise<void>): void {
 
 function kept(): void {
   keep(tidied(draft.peek()));
-  addressed(async () => replaceAddress(await toFragment(tidied(draft.peek()))));
+  addressed(() => replaceAddress(tidied(draft.peek())));
 }
 
-/** Another address of the case that is there; not where the browser's Back or Forward went on, and its case is not opened yet. */
-function replaceAddress(fragment: string): void {
-  if (location.hash !== address) return;
+/** Writes a case into the address; not where the browser's Back or Forward went on meanwhile, as the address is another case's then. */
+async function replaceAddress(tree: Case): Promise<void> {
+  const before = address;
+  const fragment = await toFragment(tree);
+  if (location.hash !== before || address !== before) return;
   history.replaceState(null, '', fragment);
   address = fragment;
 }

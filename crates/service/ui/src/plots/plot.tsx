@@ -276,6 +276,7 @@ class View {
     const run = this.shown.find(({ id }) => id === 0);
     // A mouse that is pressed draws the box to zoom into.
     if (!run || (event.buttons !== 0 && event.pointerType === 'mouse')) return;
+    if (this.isStale) this.update();
     const box = this.plot.over.getBoundingClientRect();
     const { x, y } = curveOf(run.flight, this.axes, this.unit);
     const points = { length: x.length, at: (index: number) => this.position(x[index] as number, y[index] as number, false) };

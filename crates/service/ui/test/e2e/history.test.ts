@@ -103,7 +103,7 @@ it('Back returns to the case before an example, a file or a new case, as it was 
     await page.goBack();
     await expect.poll(() => nameOf(page)).toBe(name);
   }
-  expect(await field(page, '/vehicle/mass').inputValue()).toBe('750');
+  await expect.poll(() => field(page, '/vehicle/mass').inputValue()).toBe('750');
   await page.goForward();
   await expect.poll(() => nameOf(page)).toBe('A capsule comes down from orbit');
   await page.close();
