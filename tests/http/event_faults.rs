@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use serde_json::{Value, json};
 
 use super::refusal::{Steady, good_answer};
-use super::requests::{capsule, condition, event, flight, model, with, with_all, without};
+use super::requests::{capsule, condition, event, flight, model, named, waiting, with, with_all, without};
 
 /// The capsule with events.
 fn eventful(events: &[Value]) -> Value {
@@ -409,4 +409,41 @@ async fn a_theory_knows_neither_events_nor_heating() {
         with_all(&theory, [("/initial_state/flight_path_angle", json!(0.1)), ("/stop", json!({"ceiling": 90_100}))]);
     let answer = good_answer(&steady.service, "/analytic", &climbs).await;
     assert_eq!(answer["valid"]["ends_because"], "the flight ends at the ceiling");
+}
+
+#[tokio::test]
+async fn what_waits_for_an_event_waits_for_one_that_may_happen() {
+    let steady = Steady::new().await;
+    let refused = async |events: Value, expected: &[(&str, &str)]| {
+        steady.refused_at("/simulate", &with(&capsule(), "/events", events), expected).await;
+    };
+    let unknown = "must be the name of an event of the case, got \"main\"";
+    refused(json!([named("drogue"), waiting("main", 1.0)]), &[("/events/1/when/event", unknown)]).await;
+    let several = "must be the name of one event, got \"drogue\", the name of 2";
+    refused(json!([named("drogue"), named("drogue"), waiting("drogue", 1.0)]), &[("/events/2/when/event", several)])
+        .await;
+    let circle = "must not be an event that waits";
+    let [mut first, mut second] = [waiting("second", 1.0), waiting("first", 1.0)];
+    (first["name"], second["name"]) = (json!("first"), json!("second"));
+    refused(json!([first, second]), &[("/events/0/when/event", circle), ("/events/1/when/event", circle)]).await;
+    let both = json!({"quantity": "time", "rises_through": 1, "event": "drogue"});
+    refused(
+        json!([named("drogue"), {"when": both}]),
+        &[("/events/1/when", "must have exactly one of quantity, event, got quantity and event")],
+    )
+    .await;
+    let stop = with_all(&capsule(), [("/stop", json!({"when": [{"event": "main"}]}))]);
+    steady.refused_at("/simulate", &stop, &[("/stop/when/0/event", unknown)]).await;
+}
+
+#[tokio::test]
+async fn conditions_need_what_their_quantities_do() {
+    let steady = Steady::new().await;
+    for quantity in ["heat_flux", "heat_load", "wall_temperature"] {
+        let request = with(&capsule(), "/events", json!([{"when": condition(quantity, "rises_through", 1.0)}]));
+        steady.refused_at("/simulate", &request, &[("/events/0/when/quantity", "needs heating")]).await;
+    }
+    let rest = with(&capsule(), "/initial_state/speed", 0);
+    let request = with(&rest, "/stop", json!({"when": [condition("downrange", "rises_through", 1.0)]}));
+    steady.refused_at("/simulate", &request, &[("/stop/when/0/quantity", "needs an initial heading")]).await;
 }

@@ -483,3 +483,21 @@ async fn the_example_comes_down_from_orbit_and_lands_softly() {
     let plain = without(&without(&case, "/heating"), "/events");
     assert_eq!(fly(&plain).await["termination"], "time_limit", "without the burn it stays in orbit");
 }
+
+#[tokio::test]
+async fn events_and_the_end_wait_for_events_by_their_names() {
+    let list = [
+        json!({"when": {"event": "subsonic"}}),
+        with(&mark("mach", "falls_through", 0.9), "/name", "subsonic"),
+        json!({"when": {"event": "subsonic", "delay": 12.5}, "then": {"mass": 5000}}),
+    ];
+    let case = with(&eventful(&list), "/stop", json!({"when": [{"event": "subsonic", "delay": 20}]}));
+    let answer = fly(&with(&case, "/echo", true)).await;
+    assert_eq!(order(&answer), [1, 0, 2]);
+    let times = times(&answer);
+    check::near("with it", times[1], times[0], 0.0);
+    check::near("after it", times[2], times[0] + 12.5, 1e-9);
+    check::near("the end", number(&answer["final_state"]["time"]), times[0] + 20.0, 1e-9);
+    assert_eq!((&answer["termination"], &answer["condition"]), (&json!("condition"), &json!(0)));
+    assert_eq!(answer["case"]["events"][0]["when"], json!({"event": "subsonic", "delay": 0.0}));
+}

@@ -97,6 +97,7 @@ const POSITIVE: Range = Range { low: Open(0.0), high: Unlimited };
 const NOT_NEGATIVE: Range = Range { low: Closed(0.0), high: Unlimited };
 const SPEED: Range = between(0.0, 1e6);
 const DISTANCE: Range = between(-1e12, 1e12);
+const LENGTH: Range = between(0.0, 1e12);
 const RADIUS: Range = Range { low: Open(0.0), high: Closed(1e12) };
 const PLANET_RADIUS: Range = between(1.0, 1e12);
 const QUARTER: Range = between(-FRAC_PI_2, FRAC_PI_2);
@@ -255,6 +256,7 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
             ],
         ),
         "events" => ("/events", &EVENT),
+        "waiting event" => ("/events/1/when", &[("/event", Alternative, Text), ("/delay", Optional, Number(TIME))]),
         "thrust off" => ("/events/0/then", &[("/thrust", Optional, Thrust)]),
         "thrust without mass flow" => ("/events/0/then/thrust", &THRUST),
         "parachute" => ("/events/0/then/deploy", &PARACHUTE),
@@ -304,7 +306,7 @@ const PARACHUTE: [Row; 5] = [
 ];
 
 /// What a condition may wait for, and the values that it may pass.
-pub(crate) const QUANTITIES: [(&str, Kind); 7] = [
+pub(crate) const QUANTITIES: [(&str, Kind); 21] = [
     ("time", Number(TIME)),
     ("altitude", Number(DISTANCE)),
     ("speed", Number(SPEED)),
@@ -312,6 +314,20 @@ pub(crate) const QUANTITIES: [(&str, Kind); 7] = [
     ("dynamic_pressure", Number(NOT_NEGATIVE)),
     ("load_factor", Number(NOT_NEGATIVE)),
     ("flight_path_angle", Angle(QUARTER)),
+    ("mass", Number(NOT_NEGATIVE)),
+    ("air_speed", Number(SPEED)),
+    ("inertial_speed", Number(SPEED)),
+    ("specific_energy", Number(FINITE)),
+    ("apoapsis_altitude", Number(DISTANCE)),
+    ("periapsis_altitude", Number(DISTANCE)),
+    ("inclination", Angle(HALF)),
+    ("heat_flux", Number(NOT_NEGATIVE)),
+    ("heat_load", Number(NOT_NEGATIVE)),
+    ("wall_temperature", Number(NOT_NEGATIVE)),
+    ("downrange", Number(DISTANCE)),
+    ("ground_range", Number(LENGTH)),
+    ("deceleration", Number(FINITE)),
+    ("density", Number(NOT_NEGATIVE)),
 ];
 
 const SOLVER: [Row; 2] =
@@ -393,7 +409,8 @@ pub(crate) fn fields() -> Vec<Field> {
         let ways: &[&str] = if quantity == "time" { &["rises_through"] } else { &["falls_through", "rises_through"] };
         for way in ways {
             for place in ["/events/0/when", "/stop/when/0"] {
-                let request = with(&model("events"), place, condition(quantity, way, 1.0));
+                let heated = with(&model("events"), "/heating", json!({}));
+                let request = with(&heated, place, condition(quantity, way, 1.0));
                 add("/simulate", &request, &format!("{place}/"), &[(way, Alternative, kind)]);
             }
         }

@@ -195,6 +195,7 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             ),
         ),
         ("events", with(&flight(), "/events", json!([everything_changes()]))),
+        ("waiting event", with(&flight(), "/events", json!([named("first"), waiting("first", 0.1)]))),
         (
             "thrust off",
             with(&flight(), "/events", json!([event("time", "rises_through", 0.5, &json!({"thrust": "off"}))])),
@@ -217,6 +218,16 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             ),
         ),
     ]
+}
+
+/// A mark with a name.
+pub(crate) fn named(name: &str) -> Value {
+    json!({"name": name, "when": condition("time", "rises_through", 0.2)})
+}
+
+/// A mark that waits for an event.
+pub(crate) fn waiting(name: &str, delay: f64) -> Value {
+    json!({"when": {"event": name, "delay": delay}})
 }
 
 fn inertial_thrust() -> Value {
