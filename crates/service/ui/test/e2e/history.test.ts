@@ -213,6 +213,7 @@ describe('units of angles are the reader’s', () => {
     await openExample(page, 'A capsule comes down from orbit');
     expect(Number(await field(page, '/control/bank_angle').inputValue())).toBeCloseTo(Math.PI / 3, 12);
     expect(await page.locator('[data-figure="Place"]').textContent()).toContain('rad');
+    await expect.poll(async () => (await caseOf(page)).control?.bank_angle).toBe(60);
     await page.reload();
     expect(await page.getByRole('button', { name: 'rad', exact: true }).getAttribute('aria-pressed')).toBe('true');
     expect((await caseOf(page)).control?.bank_angle).toBe(60);
