@@ -9,10 +9,10 @@ use reentry::propulsion::{Axis, Impulse};
 use reentry::scenario::{Fault, ScenarioError};
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::{EventPoint, FlightPoint, Sampling, Termination};
-use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Stop, Trajectory, Vehicle};
+use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Stop, Trajectory, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, in_vacuum, miss, spherical, target_2, vehicle, with_tolerance};
+use crate::flights::{capsule, fly, in_vacuum, miss, spherical, target_2, vehicle, with_tolerance};
 
 fn falls(quantity: Quantity, value: f64) -> Condition {
     Condition { quantity, value, direction: Direction::Falling }
@@ -33,25 +33,6 @@ fn push(along: Axis, speed_change: f64) -> Effect {
 /// TARGET case 2, which dips to 214 m, climbs to 4 km and lands, in the air of the standard, which has a Mach number.
 fn skip() -> Case {
     Case { atmosphere: Atmosphere::Us76, vehicle: vehicle(700.0, 0.216_419, 0.5, 0.2), ..target_2() }
-}
-
-/// A capsule comes home without lift.
-fn capsule() -> Case {
-    let start = FlightPath {
-        radius: 6_498_137.0,
-        longitude: 0.3,
-        geocentric_latitude: 0.4,
-        speed: 7500.0,
-        flight_path_angle: -0.05,
-        heading: 0.4,
-    };
-    Case {
-        atmosphere: Atmosphere::Us76,
-        vehicle: vehicle(3000.0, 4.0, 0.0, 1.3),
-        control: Control::banked(0.0),
-        initial_state: start.to_planet_fixed(),
-        ..target_2()
-    }
 }
 
 fn parachute() -> Effect {

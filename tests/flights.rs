@@ -38,6 +38,25 @@ pub(crate) fn target_2() -> Case {
     }
 }
 
+/// A capsule comes home without lift, in standard air.
+pub(crate) fn capsule() -> Case {
+    let start = FlightPath {
+        radius: 6_498_137.0,
+        longitude: 0.3,
+        geocentric_latitude: 0.4,
+        speed: 7500.0,
+        flight_path_angle: -0.05,
+        heading: 0.4,
+    };
+    Case {
+        atmosphere: Atmosphere::Us76,
+        vehicle: vehicle(3000.0, 4.0, 0.0, 1.3),
+        control: Control::banked(0.0),
+        initial_state: start.to_planet_fixed(),
+        ..target_2()
+    }
+}
+
 pub(crate) fn vehicle(mass: f64, reference_area: f64, lift_coefficient: f64, drag_coefficient: f64) -> Vehicle {
     let aerodynamics = Aerodynamics::Constant { lift_coefficient, drag_coefficient };
     Vehicle { mass, reference_area, aerodynamics, nose_radius: None }

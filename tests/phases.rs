@@ -5,10 +5,10 @@ use reentry::heating::{Convective, Heating, Radiative};
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Axis, Impulse, Thrust};
 use reentry::trajectory::{FlightPhase, FlightPoint, Peak, PhaseStart};
-use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Stop, Trajectory, Vehicle};
+use reentry::{Aerodynamics, Case, Stop, Trajectory, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, spherical, target_2, vehicle};
+use crate::flights::{capsule, fly, spherical};
 
 fn falls(quantity: Quantity, value: f64) -> Trigger {
     Condition { quantity, value, direction: Direction::Falling }.into()
@@ -36,31 +36,21 @@ fn thrust(force: f64, propellant: Option<f64>) -> Effect {
     Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
 }
 
-/// A heated capsule that comes home without lift.
-fn capsule() -> Case {
-    let start = FlightPath {
-        radius: 6_498_137.0,
-        longitude: 0.3,
-        geocentric_latitude: 0.4,
-        speed: 7500.0,
-        flight_path_angle: -0.05,
-        heading: 0.4,
-    };
+/// The capsule with a heat shield.
+fn heated() -> Case {
     Case {
-        atmosphere: Atmosphere::Us76,
-        vehicle: Vehicle { nose_radius: Some(1.0), ..vehicle(3000.0, 4.0, 0.0, 1.3) },
-        initial_state: start.to_planet_fixed(),
+        vehicle: Vehicle { nose_radius: Some(1.0), ..capsule().vehicle },
         heating: Some(Heating {
             convective: Convective::SUTTON_GRAVES,
             radiative: Radiative::TauberSutton,
             emissivity: 0.85,
         }),
-        ..target_2()
+        ..capsule()
     }
 }
 
 fn with(events: Vec<Event>) -> Case {
-    Case { events, ..capsule() }
+    Case { events, ..heated() }
 }
 
 fn starts(flight: &Trajectory) -> Vec<PhaseStart> {

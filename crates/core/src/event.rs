@@ -189,7 +189,7 @@ impl Quantity {
         matches!(self, Self::HeatFlux | Self::HeatLoad | Self::WallTemperature)
     }
 
-    /// The size below which it is told as a small number, in its unit.
+    /// The least size of a value from which its resolution follows, in the unit of the quantity: smaller values are as exact as this one.
     fn scale(self) -> f64 {
         match self {
             Self::Altitude | Self::ApoapsisAltitude | Self::PeriapsisAltitude | Self::Downrange | Self::GroundRange => {

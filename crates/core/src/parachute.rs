@@ -18,15 +18,15 @@ pub struct Parachute {
 pub struct Canopy {
     /// The number of the event that deployed it.
     pub event: usize,
-    /// Which.
+    /// The parachute.
     pub parachute: Parachute,
     /// When it was deployed, s.
     pub deployed: f64,
-    /// How far it is.
+    /// How far it has opened.
     pub inflation: Inflation,
 }
 
-/// How far a canopy is.
+/// How far a canopy has opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inflation {
     /// It does not fill yet, and has no drag.
