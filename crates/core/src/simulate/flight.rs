@@ -191,26 +191,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             settled?;
         }
         self.change_by_time()?;
-        let mut eventless = true;
-        if !self.alarms.is_empty() {
-            self.look();
-            loop {
-                while let Some(event) = self.alarms.next_event(self.time) {
-                    self.happen(event)?;
-                    self.change_by_time()?;
-                    self.look();
-                    eventless = false;
-                }
-                if is_on_ground && !self.lifts_off() {
-                    ending = Some(self.ground());
-                    break;
-                }
-                // What else moves on from its value is known when all that changes the motion has happened.
-                if !self.look_closely() {
-                    break;
-                }
-            }
+        let happened = self.log.happenings.len();
+        let stays_on_ground = !self.alarms.is_empty() && !self.let_events_happen(is_on_ground)?;
+        if stays_on_ground {
+            ending = Some(self.ground());
         }
+        let eventless = self.log.happenings.len() == happened;
         if let Some(ending) = ending.or_else(|| self.alarms.end()) {
             return Ok(Some(self.arrival(ending)));
         }
@@ -224,6 +210,25 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         match exit.filter(|exit| eventless && exit.is_undone(&before, &watch, self.motion.forces())) {
             Some(Exit { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
             None => Ok(None),
+        }
+    }
+
+    /// Lets all happen that is met at the present instant; returns whether the flight leaves the stop altitude, if it `is_on_ground`.
+    fn let_events_happen(&mut self, is_on_ground: bool) -> Result<bool, SimulationError> {
+        self.look();
+        loop {
+            while let Some(event) = self.alarms.next_event(self.time) {
+                self.happen(event)?;
+                self.change_by_time()?;
+                self.look();
+            }
+            if is_on_ground && !self.lifts_off() {
+                return Ok(false);
+            }
+            // What else moves on from its value is known when all that changes the motion has happened.
+            if !self.look_closely() {
+                return Ok(true);
+            }
         }
     }
 
