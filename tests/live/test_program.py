@@ -71,7 +71,8 @@ def refuses(service):
     try:
         with socket.create_connection(("127.0.0.1", service.port)):
             return False
-    except ConnectionRefusedError:
+    # A connection that was being made when the listener closed is reset.
+    except (ConnectionRefusedError, ConnectionResetError):
         return True
 
 
