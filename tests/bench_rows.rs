@@ -4,6 +4,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a benchmark that cannot go on has failed")]
 
+use std::sync::atomic::AtomicBool;
+
 use reentry::trajectory::Sampling;
 use reentry::{Scenario, simulate};
 use reentry_service::wire::columns::Columns;
@@ -27,7 +29,7 @@ fn main() {
 /// What the rows of a case cost.
 fn line(name: &str) -> String {
     let (scenario, response) = answered(name);
-    let flight = simulate(&scenario, &false.into()).unwrap();
+    let flight = simulate(&scenario, &AtomicBool::new(false)).unwrap();
     let trajectory = response.trajectory.as_ref().unwrap();
     let csv = String::from_utf8(as_csv(trajectory)).unwrap();
     let cells = csv.lines().skip(1).flat_map(|line| line.split(','));
@@ -54,7 +56,7 @@ fn answered(name: &str) -> (Scenario, SimulateResponse) {
     let tree = json::parse(case.request.to_string().as_bytes()).unwrap();
     let job = Job::try_from_tree(tree, Wanted::Answer).unwrap();
     let scenario = job.scenario.clone();
-    let flight = simulate(&scenario, &false.into()).unwrap();
+    let flight = simulate(&scenario, &AtomicBool::new(false)).unwrap();
     let points = flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap());
     (scenario, SimulateResponse::new(job, &flight, Some(points), Extras::default(), 0.0))
 }

@@ -27,7 +27,6 @@ use reentry_service::format::Format;
 use reentry_service::router::surrounded;
 use reentry_service::state::AppState;
 use reentry_service::telemetry::Log;
-use reentry_service::wire::json;
 use reentry_tests::loopback::{Connection, Program, get, percentile, post, processor_time, target_2};
 use serde_json::{Value, json};
 use tokio::task::JoinSet;
@@ -230,13 +229,9 @@ async fn serve_inline(address: &str) -> io::Result<()> {
 }
 
 /// The handler of `/simulate`, but for the pool.
-async fn simulate_inline(
-    State(app): State<AppState>,
-    parts: Parts,
-    Payload(body): Payload,
-) -> Result<Response, ApiError> {
+async fn simulate_inline(State(app): State<AppState>, parts: Parts, body: Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json, Format::Csv])?;
     let interrupt = AtomicBool::new(false);
-    let body = answer::simulate(json::parse(&body)?, format, app.config.row_limit, &interrupt)?.body;
+    let body = answer::simulate(body.json(&interrupt)?, format, app.config.row_limit, &interrupt)?.body;
     Ok(([(header::CONTENT_TYPE, format.media_type())], body).into_response())
 }

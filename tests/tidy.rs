@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
 const CORE: [&[&str]; 11] = [
-    &["scalar", "root", "plain"],
+    &["scalar", "root", "plain", "interrupt"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
     &["event"],
@@ -19,10 +19,13 @@ const CORE: [&[&str]; 11] = [
 ];
 
 /// The levels of the service.
-const SERVICE: [&[&str]; 10] = [
-    &["wire", "config", "memory", "metrics", "coding"],
-    &["error", "connection", "client", "telemetry"],
-    &["compute", "embedded", "format", "openapi", "rate"],
+const SERVICE: [&[&str]; 13] = [
+    &["wire", "config", "metrics", "coding"],
+    &["client"],
+    &["memory"],
+    &["error", "connection", "telemetry"],
+    &["embedded", "format", "openapi", "rate"],
+    &["compute"],
     &["state"],
     &["middleware", "answer"],
     &["extract", "validation", "reply"],

@@ -1,17 +1,20 @@
 //! `POST /simulate/batch`: its lines, what is refused as a whole, and how its jobs share the workers with single ones.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use axum::body::Body;
 use axum::http::{Method, Request, StatusCode, header};
+use reentry_service::client::Client;
 use reentry_service::compute::Compute;
+use reentry_service::compute::Task;
 use reentry_service::config::Config;
 use reentry_service::error::ApiError;
 use reentry_tests::service::{Answer, Service, pool};
 use serde_json::{Value, json};
 use tokio::task::yield_now;
+use tokio::time::sleep;
 
 use super::problems::{endless, free_again, orbiting};
 use super::refusal::{Steady, good_answer, problem};
@@ -199,10 +202,10 @@ fn compute(workers: usize, batches: usize, deadline: Duration) -> Arc<Compute> {
     pool(Config { workers, queue: 8, batches, deadline, ..Config::default() })
 }
 
-type Job = Box<dyn FnOnce(&AtomicBool) -> Result<usize, ApiError> + Send>;
+type Job = Box<dyn FnOnce(&Task) -> Result<usize, ApiError> + Send>;
 
 fn endless_job() -> Job {
-    Box::new(|interrupt| endless(interrupt).map(|()| 0))
+    Box::new(|task| endless(task).map(|()| 0))
 }
 
 /// A job that counts how many have run.
@@ -217,21 +220,28 @@ async fn batches_and_single_jobs_do_not_wait_for_each_other() {
     let deadline = Duration::from_secs(20);
     for workers in [1, 2] {
         let compute = compute(workers, 8, deadline);
-        let batch = || compute.run_batch("/simulate/batch", vec![endless_job(), endless_job()], LONG).unwrap();
+        let batch = || {
+            compute.run_batch("/simulate/batch", Client::default(), vec![endless_job(), endless_job()], LONG).unwrap()
+        };
         let mut batches = [batch(), batch(), batch(), batch()];
         for _ in 0..100 {
-            assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
+            assert!(compute.run("/simulate", Client::default(), |_| Ok(())).await.is_ok());
         }
         assert!(batches.iter_mut().all(|batch| batch.try_recv().is_err()), "a batch was finished");
         drop(batches);
         let single = || {
             let compute = Arc::clone(&compute);
-            tokio::spawn(async move { compute.run("/simulate", endless).await })
+            tokio::spawn(async move { compute.run("/simulate", Client::default(), endless).await })
         };
         let singles = [single(), single(), single()];
         let count = Arc::new(AtomicUsize::new(0));
         let jobs = (0..100).map(|_| counted(&count)).collect();
-        let mut batch = compute.run_batch("/simulate/batch", jobs, LONG).unwrap();
+        // Those that were given up give their slots back.
+        free_again(|| async {
+            compute.run_batch("/simulate/batch", Client::default(), vec![endless_job()], LONG).is_ok()
+        })
+        .await;
+        let mut batch = compute.run_batch("/simulate/batch", Client::default(), jobs, LONG).unwrap();
         while let Some(result) = batch.recv().await {
             result.unwrap();
         }
@@ -247,14 +257,15 @@ async fn batches_take_turns() {
     let jobs = |name: &'static str| -> Vec<_> {
         let note = |_| {
             let order = Arc::clone(&order);
-            move |_: &AtomicBool| {
+            move |_: &Task| {
                 order.lock().unwrap().push(name);
                 Ok(())
             }
         };
         (0..3).map(note).collect()
     };
-    let mut batches = ["first", "second"].map(|name| compute.run_batch("/simulate/batch", jobs(name), LONG).unwrap());
+    let mut batches = ["first", "second"]
+        .map(|name| compute.run_batch("/simulate/batch", Client::default(), jobs(name), LONG).unwrap());
     for batch in &mut batches {
         while batch.recv().await.is_some() {}
     }
@@ -268,7 +279,9 @@ async fn batches_take_turns() {
 async fn nothing_is_computed_far_ahead_of_who_reads() {
     let compute = compute(1, 1, LONG);
     let count = Arc::new(AtomicUsize::new(0));
-    let mut batch = compute.run_batch("/simulate/batch", (0..100).map(|_| counted(&count)).collect(), LONG).unwrap();
+    let mut batch = compute
+        .run_batch("/simulate/batch", Client::default(), (0..100).map(|_| counted(&count)).collect(), LONG)
+        .unwrap();
     for taken in 0..100 {
         // One result waits in the channel, and one before it.
         let ahead = (taken + 2).min(100);
@@ -276,7 +289,7 @@ async fn nothing_is_computed_far_ahead_of_who_reads() {
             yield_now().await;
         }
         for _ in 0..3 {
-            assert!(compute.run("/simulate", |_| Ok(())).await.is_ok(), "the worker is not free");
+            assert!(compute.run("/simulate", Client::default(), |_| Ok(())).await.is_ok(), "the worker is not free");
         }
         assert_eq!(count.load(Ordering::SeqCst), ahead);
         assert_eq!(batch.recv().await.unwrap().unwrap(), taken);
@@ -285,12 +298,16 @@ async fn nothing_is_computed_far_ahead_of_who_reads() {
 }
 
 #[tokio::test]
-async fn a_batch_that_nobody_reads_ends_early_and_gives_its_place_back() {
+async fn a_batch_that_nobody_reads_has_no_slot_and_ends_early() {
     let compute = compute(1, 1, Duration::from_millis(50));
     let count = Arc::new(AtomicUsize::new(0));
-    let mut unread = compute.run_batch("/simulate/batch", (0..100).map(|_| counted(&count)).collect(), LONG).unwrap();
+    let mut unread = compute
+        .run_batch("/simulate/batch", Client::default(), (0..100).map(|_| counted(&count)).collect(), LONG)
+        .unwrap();
     let jobs = || (0..3).map(|_| counted(&count)).collect();
-    free_again(|| async { compute.run_batch("/simulate/batch", jobs(), LONG).is_ok() }).await;
+    free_again(|| async { compute.run_batch("/simulate/batch", Client::default(), jobs(), LONG).is_ok() }).await;
+    // Only now has it waited for its reader as long as it does.
+    sleep(Duration::from_secs(1)).await;
     assert!(unread.recv().await.is_some());
     assert!(unread.recv().await.is_none());
 }
@@ -299,11 +316,16 @@ async fn a_batch_that_nobody_reads_ends_early_and_gives_its_place_back() {
 async fn a_batch_whose_client_goes_away_is_given_up() {
     let compute = compute(1, 1, LONG);
     let count = Arc::new(AtomicUsize::new(0));
-    let batch = compute.run_batch("/simulate/batch", vec![endless_job(), counted(&count)], LONG).unwrap();
-    assert!(matches!(compute.run_batch("/simulate/batch", vec![endless_job()], LONG), Err(ApiError::Busy)));
+    let batch =
+        compute.run_batch("/simulate/batch", Client::default(), vec![endless_job(), counted(&count)], LONG).unwrap();
+    assert!(matches!(
+        compute.run_batch("/simulate/batch", Client::default(), vec![endless_job()], LONG),
+        Err(ApiError::Busy)
+    ));
     drop(batch);
-    free_again(|| async { compute.run_batch("/simulate/batch", vec![endless_job()], LONG).is_ok() }).await;
-    assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
+    free_again(|| async { compute.run_batch("/simulate/batch", Client::default(), vec![endless_job()], LONG).is_ok() })
+        .await;
+    assert!(compute.run("/simulate", Client::default(), |_| Ok(())).await.is_ok());
     assert_eq!(count.load(Ordering::SeqCst), 0);
 }
 
@@ -311,7 +333,8 @@ async fn a_batch_whose_client_goes_away_is_given_up() {
 async fn a_case_beyond_the_time_of_a_single_job_fails_alone() {
     let compute = compute(1, 1, Duration::from_secs(1));
     let count = Arc::new(AtomicUsize::new(7));
-    let mut batch = compute.run_batch("/simulate/batch", vec![endless_job(), counted(&count)], LONG).unwrap();
+    let mut batch =
+        compute.run_batch("/simulate/batch", Client::default(), vec![endless_job(), counted(&count)], LONG).unwrap();
     let first = batch.recv().await.unwrap();
     assert!(matches!(first, Err(ApiError::DeadlineExceeded { seconds: 1.0 })), "{first:?}");
     assert_eq!(batch.recv().await.unwrap().unwrap(), 7);
@@ -322,13 +345,13 @@ async fn after_the_time_of_a_batch_nothing_is_computed_any_more() {
     let compute = compute(1, 1, LONG);
     let count = Arc::new(AtomicUsize::new(0));
     let jobs = vec![counted(&count), endless_job(), counted(&count), counted(&count)];
-    let mut batch = compute.run_batch("/simulate/batch", jobs, Duration::from_secs(1)).unwrap();
+    let mut batch = compute.run_batch("/simulate/batch", Client::default(), jobs, Duration::from_secs(1)).unwrap();
     assert_eq!(batch.recv().await.unwrap().unwrap(), 0);
     for _ in 0..3 {
         let late = batch.recv().await.unwrap();
         assert!(matches!(late, Err(ApiError::DeadlineExceeded { seconds: 1.0 })), "{late:?}");
         // What is left to say takes no place.
-        assert!(compute.run_batch("/simulate/batch", Vec::<Job>::new(), LONG).is_ok());
+        assert!(compute.run_batch("/simulate/batch", Client::default(), Vec::<Job>::new(), LONG).is_ok());
     }
     assert!(batch.recv().await.is_none());
     assert_eq!(count.load(Ordering::SeqCst), 1);

@@ -2,14 +2,17 @@
 
 use std::net::SocketAddr;
 use std::num::NonZeroU32;
+use std::time::Instant;
 
 use axum::body::Body;
 use axum::http::{HeaderMap, Request, StatusCode};
 use reentry_service::client::Peer;
 use reentry_service::config::{Config, Origins};
 use reentry_tests::service::{Answer, Service};
+use serde_json::{Value, json};
 
-use super::requests::capsule;
+use super::problems::orbiting;
+use super::requests::{capsule, with};
 
 /// A service that lets a client send `burst` requests at once, and one in 1000 s after that.
 fn limited(burst: u32) -> Service {
@@ -39,14 +42,14 @@ fn told(headers: &HeaderMap, name: &str) -> String {
 async fn a_client_that_sends_too_much_is_told_when_to_come_back() {
     let service = limited(3);
     for left in [2, 1, 0] {
-        let answer = get(&service, "/openapi.json", "203.0.113.1", &[]).await;
-        assert_eq!(answer.status, 200);
+        let answer = get(&service, "/docs", "203.0.113.1", &[]).await;
+        assert_eq!(answer.status, 308);
         assert_eq!(told(&answer.headers, "ratelimit-policy"), "\"client\";q=3;w=3000");
         // What has been taken comes back in so many seconds.
         let reset = 1000 * (3 - left);
         assert_eq!(told(&answer.headers, "ratelimit"), format!("\"client\";r={left};t={reset}"));
     }
-    let refused = get(&service, "/openapi.json", "203.0.113.1", &[]).await;
+    let refused = get(&service, "/docs", "203.0.113.1", &[]).await;
     assert_eq!(refused.status, StatusCode::TOO_MANY_REQUESTS);
     assert_eq!(refused.json()["type"], "/problems/too-many-requests");
     let seconds: u64 = told(&refused.headers, "retry-after").parse().unwrap();
@@ -59,7 +62,7 @@ async fn a_client_that_sends_too_much_is_told_when_to_come_back() {
     assert_eq!(told(&refused.headers, "ratelimit"), "\"client\";r=0;t=3000");
     assert!(!told(&refused.headers, "x-request-id").is_empty());
     // Another client is not its fault, and whoever watches the service is no client.
-    assert_eq!(get(&service, "/openapi.json", "203.0.113.2", &[]).await.status, 200);
+    assert_eq!(get(&service, "/docs", "203.0.113.2", &[]).await.status, 308);
     for path in ["/health/live", "/health/ready", "/metrics"] {
         let answer = get(&service, path, "203.0.113.1", &[]).await;
         assert_eq!(answer.status, 200, "{path}");
@@ -112,6 +115,50 @@ async fn a_client_has_a_whole_network_of_ipv6() {
 }
 
 #[tokio::test]
+async fn a_site_of_ipv6_has_eight_times_as_much_as_a_client() {
+    let service = limited(1);
+    let ask = async |peer: String| get(&service, "/docs", &peer, &[]).await.status.as_u16();
+    for network in 0..8 {
+        assert_eq!(ask(format!("2001:db8:1:{network}::1")).await, 308, "{network}");
+    }
+    assert_eq!(ask("2001:db8:1:8::1".to_owned()).await, 429);
+    assert_eq!(ask("2001:db8:2:8::1".to_owned()).await, 308);
+}
+
+#[tokio::test]
+async fn computing_counts_and_may_bring_a_client_into_debt() {
+    // A request comes back in 1000 s, and costs as much as 10 ms of computing.
+    let service = limited(20);
+    let ask = async |path: &str, body: &Value, peer: &str| {
+        let request = Request::post(path).header("content-type", "application/json");
+        let mut request = request.body(Body::from(body.to_string())).unwrap();
+        request.extensions_mut().insert(Peer(SocketAddr::new(peer.parse().unwrap(), 1234)));
+        service.send(request).await
+    };
+    let left = async |peer| told(&get(&service, "/docs", peer, &[]).await.headers, "ratelimit");
+    let short = with(&capsule(), "/output", json!({"trajectory": false}));
+    let answer = ask("/simulate/batch", &json!(vec![&short; 1000]), "203.0.113.1").await;
+    assert_eq!(answer.status, 200);
+    let seconds = |line: &[u8]| serde_json::from_slice::<Value>(line).unwrap()["solver"]["elapsed"].as_f64().unwrap();
+    let computed: f64 = answer.body.split(|byte| *byte == b'\n').filter(|line| !line.is_empty()).map(seconds).sum();
+    let batch = left("203.0.113.1").await;
+    let reset: f64 = batch.split("t=").nth(1).unwrap().parse().unwrap();
+    // Flights are not all that is computed.
+    assert!(reset > 1000.0 * (1.0 + computed / 0.01), "{batch}, {computed}");
+    // What was not left is a debt.
+    let start = Instant::now();
+    // 100 000 steps.
+    assert_eq!(ask("/simulate", &orbiting(), "203.0.113.2").await.status, 422);
+    let elapsed = start.elapsed().as_secs_f64();
+    let refused = get(&service, "/docs", "203.0.113.2", &[]).await;
+    assert_eq!(refused.status, 429, "{elapsed} s, {:?}", refused.headers);
+    let wait: f64 = told(&refused.headers, "retry-after").parse().unwrap();
+    assert!(wait < 1000.0 * (2.0 + elapsed / 0.01 - 20.0), "{wait}, {elapsed}");
+    assert!(wait > 1000.0 * (0.5 * elapsed / 0.01 - 20.0), "{wait}, {elapsed}");
+    assert_eq!(left("203.0.113.3").await, "\"client\";r=19;t=1000");
+}
+
+#[tokio::test]
 async fn without_a_limit_nothing_is_said_of_one() {
     let service = Service::new();
     for _ in 0..100 {
@@ -141,7 +188,7 @@ async fn a_browser_lets_the_pages_of_the_origins_in_the_settings_ask_and_no_othe
 
 #[tokio::test]
 async fn every_answer_protects_the_browser_that_gets_it() {
-    let service = limited(5);
+    let service = limited(1_000);
     let refused = service.post_text("/simulate", "{").await;
     let flown = service.post("/simulate", &capsule()).await;
     let mut answers = vec![(refused, "default-src 'none'; frame"), (flown, "default-src 'none'; frame")];
@@ -153,11 +200,13 @@ async fn every_answer_protects_the_browser_that_gets_it() {
         ("/", "default-src 'none'; script-src 'self'; style-src 'self'; img"),
         ("/docs/", "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img"),
         ("/docs/swagger-ui.css", "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img"),
-        ("/docs", "default-src 'none'; frame"),
     ] {
         answers.push((get(&service, path, "203.0.113.1", &[]).await, policy));
     }
-    assert_eq!(answers.pop().unwrap().0.status, 429, "the sixth");
+    let hasty = limited(1);
+    assert_eq!(get(&hasty, "/docs", "203.0.113.1", &[]).await.status, 308);
+    answers.push((get(&hasty, "/docs", "203.0.113.1", &[]).await, "default-src 'none'; frame"));
+    assert_eq!(answers.last().unwrap().0.status, 429);
     for (answer, policy) in answers {
         assert!(told(&answer.headers, "content-security-policy").starts_with(policy), "{answer:?}");
         assert!(told(&answer.headers, "content-security-policy").contains("frame-ancestors 'none'"));

@@ -9,6 +9,8 @@ use std::time::Duration;
 use axum::body::Body;
 use axum::http::{Request, header};
 use http_body_util::BodyExt;
+use reentry_service::client::{Client, Peer};
+use reentry_service::compute::Task;
 use reentry_service::config::Config;
 use reentry_service::state::AppState;
 use reentry_service::telemetry::LostLines;
@@ -121,58 +123,106 @@ fn with_one_worker(deadline: Duration) -> (AppState, impl Fn(&str) -> f64) {
 #[tokio::test]
 async fn jobs_of_clients_that_have_gone_are_counted() {
     let (app, count) = with_one_worker(Duration::from_mins(5));
-    let client = {
+    let (free, freed) = std::sync::mpsc::channel::<()>();
+    // It gives way to nobody, as it looks at no flag.
+    let running = {
         let compute = Arc::clone(&app.compute);
-        tokio::spawn(async move { compute.run("/simulate", endless).await })
+        let stubborn = move |_: &Task| Ok(freed.recv().is_err());
+        tokio::spawn(async move { compute.run("/simulate", Client::default(), stubborn).await })
     };
     free_again(|| async { count("reentry_jobs_running") == 1.0 }).await;
     let waiting = {
         let compute = Arc::clone(&app.compute);
-        tokio::spawn(async move { compute.run("/convert", |_| Ok(())).await })
+        tokio::spawn(async move { compute.run("/convert", Client::default(), |_| Ok(())).await })
     };
     free_again(|| async { count("reentry_jobs_queued") == 1.0 }).await;
     waiting.abort();
-    client.abort();
-    free_again(|| async { count("reentry_jobs_running") == 0.0 && count("reentry_jobs_queued") == 0.0 }).await;
+    running.abort();
+    free_again(|| async { count("reentry_jobs_queued") == 0.0 }).await;
+    drop(free);
+    free_again(|| async { count("reentry_jobs_running") == 0.0 }).await;
     assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"disconnect\"}"), 1.0);
     assert_eq!(count("reentry_cancellations_total{route=\"/convert\",cause=\"disconnect\"}"), 1.0);
 }
 
 #[tokio::test]
+async fn a_job_that_computes_for_long_is_suspended_while_others_wait() {
+    let (app, count) = with_one_worker(Duration::from_mins(5));
+    let long = {
+        let compute = Arc::clone(&app.compute);
+        tokio::spawn(async move { compute.run("/simulate", Client::default(), endless).await })
+    };
+    free_again(|| async { count("reentry_jobs_running") == 1.0 }).await;
+    let (free, freed) = std::sync::mpsc::channel::<()>();
+    let short = {
+        let compute = Arc::clone(&app.compute);
+        tokio::spawn(async move { compute.run("/convert", Client::default(), move |_| Ok(freed.recv())).await })
+    };
+    free_again(|| async { count("reentry_jobs_suspended") == 1.0 }).await;
+    free_again(|| async { count("reentry_jobs_running") == 1.0 && count("reentry_jobs_queued") == 0.0 }).await;
+    drop(free);
+    assert!(short.await.unwrap().is_ok());
+    free_again(|| async { count("reentry_jobs_suspended") == 0.0 }).await;
+    assert!(!long.is_finished());
+    // It hears that nobody waits while it is suspended, too.
+    let (free, freed) = std::sync::mpsc::channel::<()>();
+    let short = {
+        let compute = Arc::clone(&app.compute);
+        tokio::spawn(async move { compute.run("/convert", Client::default(), move |_| Ok(freed.recv())).await })
+    };
+    free_again(|| async { count("reentry_jobs_suspended") == 1.0 }).await;
+    long.abort();
+    free_again(|| async { count("reentry_jobs_suspended") == 0.0 }).await;
+    assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"disconnect\"}"), 1.0);
+    drop(free);
+    assert!(short.await.unwrap().is_ok());
+}
+
+#[tokio::test]
 async fn jobs_beyond_their_deadline_are_counted() {
     let (app, count) = with_one_worker(Duration::from_millis(20));
-    assert!(app.compute.run("/simulate", endless).await.is_err());
+    assert!(app.compute.run("/simulate", Client::default(), endless).await.is_err());
     free_again(|| async { count("reentry_jobs_running") == 0.0 }).await;
     assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"deadline\"}"), 1.0);
 }
 
 #[tokio::test]
-async fn answers_are_held_until_they_are_taken_and_a_full_memory_refuses_more() {
-    let config = Config { memory: 1000, body_limit: 1000, batch_body_limit: 1000, ..Config::default() };
+async fn answers_are_held_until_they_are_taken_and_a_client_holds_its_share_at_most() {
+    // Room for two answers, and none for a third.
+    let config = Config { memory: 6400, body_limit: 400, batch_body_limit: 800, ..Config::default() };
     let app = AppState::new(config, LostLines::default()).unwrap();
     let router = reentry_service::app(app.clone());
-    let request = || {
+    let ask = async |client: u8| {
         let body = with(&capsule(), "/output", json!({"trajectory": false})).to_string();
         let request = Request::post("/simulate").header(header::CONTENT_TYPE, "application/json");
-        request.body(Body::from(body)).unwrap()
+        let mut request = request.body(Body::from(body)).unwrap();
+        request.extensions_mut().insert(Peer(([203, 0, 113, client], 1234).into()));
+        let Ok(answer) = router.clone().oneshot(request).await;
+        answer
     };
-    let Ok(first) = router.clone().oneshot(request()).await;
+    let ready = async || {
+        let Ok(answer) = router.clone().oneshot(Request::get("/health/ready").body(Body::empty()).unwrap()).await;
+        answer.status()
+    };
+    let first = ask(1).await;
     assert_eq!(first.status(), 200);
-    let held = app.memory.held();
-    assert!(held > 1000, "{held}");
-    let Ok(second) = router.clone().oneshot(request()).await;
-    assert_eq!(second.status(), 503);
-    let ready = || router.clone().oneshot(Request::get("/health/ready").body(Body::empty()).unwrap());
-    let Ok(busy) = ready().await;
-    assert_eq!(busy.status(), 503);
+    let held = app.memory.answers.held();
+    assert!((2500..5000).contains(&held), "{held}");
+    let again = ask(1).await;
+    assert_eq!(again.status(), 429);
+    assert_eq!(again.headers()["retry-after"], "1");
+    assert_eq!(ready().await, 200);
+    let second = ask(2).await;
+    assert_eq!(second.status(), 200);
+    assert_eq!(ask(3).await.status(), 503);
+    assert_eq!(ready().await, 503);
     let body = first.into_body().collect().await.unwrap().to_bytes();
-    assert_eq!(body.len(), held);
+    assert!((body.len()..5 * body.len() / 4).contains(&held), "{held}");
     drop(body);
-    assert_eq!(app.memory.held(), 0);
-    let Ok(ok) = ready().await;
-    assert_eq!(ok.status(), 200);
-    let Ok(third) = router.clone().oneshot(request()).await;
-    assert_eq!(third.status(), 200);
+    assert_eq!(ready().await, 200);
+    drop(second);
+    assert_eq!(app.memory.answers.held(), 0);
+    assert_eq!(ask(1).await.status(), 200);
 }
 
 #[tokio::test]
@@ -185,7 +235,7 @@ async fn an_answer_that_is_not_taken_to_its_end_is_abandoned() {
     let metrics = read(&app.metrics.text(app.now()).unwrap());
     assert_eq!(count(&metrics, "reentry_requests_total{route=\"/openapi.json\",outcome=\"abandoned\"}"), 1.0);
     assert_eq!(count(&metrics, "reentry_requests_in_flight{route=\"/openapi.json\"}"), 0.0);
-    assert_eq!(count(&metrics, "reentry_held_bytes"), 0.0);
+    assert_eq!(count(&metrics, "reentry_held_bytes{kind=\"answers\"}"), 0.0);
 }
 
 #[tokio::test]

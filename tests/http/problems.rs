@@ -2,12 +2,14 @@
 
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use axum::http::{Method, Request, header};
 use http_body_util::{BodyExt, Full, Limited};
+use reentry::Interrupt;
+use reentry_service::client::Client;
+use reentry_service::compute::Task;
 use reentry_service::config::Config;
 use reentry_service::error::ApiError;
 use reentry_tests::service::{Service, pool};
@@ -325,8 +327,8 @@ pub(crate) async fn free_again<F: Future<Output = bool>>(has_room: impl Fn() -> 
 
 /// A job that goes on until nobody wants it any more.
 #[expect(clippy::unnecessary_wraps, reason = "a job may fail")]
-pub(crate) fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
-    while !interrupt.load(Ordering::Relaxed) {
+pub(crate) fn endless(task: &Task) -> Result<(), ApiError> {
+    while !task.is_raised() {
         std::thread::yield_now();
     }
     Ok(())
@@ -335,10 +337,10 @@ pub(crate) fn endless(interrupt: &AtomicBool) -> Result<(), ApiError> {
 #[tokio::test]
 async fn a_job_is_given_up_at_its_deadline() {
     let compute = pool(Config { workers: 1, queue: 0, deadline: Duration::from_millis(20), ..Config::default() });
-    let result = compute.run("/simulate", endless).await;
+    let result = compute.run("/simulate", Client::default(), endless).await;
     assert!(matches!(result, Err(ApiError::DeadlineExceeded { .. })), "{result:?}");
     free_again(|| async { compute.has_room() }).await;
-    assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
+    assert!(compute.run("/simulate", Client::default(), |_| Ok(())).await.is_ok());
 }
 
 #[tokio::test]
@@ -346,12 +348,12 @@ async fn a_job_whose_client_goes_away_is_given_up() {
     let compute = pool(Config { workers: 1, queue: 0, deadline: Duration::from_mins(5), ..Config::default() });
     let client = {
         let compute = Arc::clone(&compute);
-        tokio::spawn(async move { compute.run("/simulate", endless).await })
+        tokio::spawn(async move { compute.run("/simulate", Client::default(), endless).await })
     };
     while compute.has_room() {
         tokio::task::yield_now().await;
     }
     client.abort();
     free_again(|| async { compute.has_room() }).await;
-    assert!(compute.run("/simulate", |_| Ok(())).await.is_ok());
+    assert!(compute.run("/simulate", Client::default(), |_| Ok(())).await.is_ok());
 }

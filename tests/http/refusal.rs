@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::requests::{conversion, flight};
 
 /// The whole list of problems: type, title, status.
-const PROBLEMS: [(&str, &str, u16); 22] = [
+const PROBLEMS: [(&str, &str, u16); 24] = [
     ("/problems/invalid-json", "Not JSON", 400),
     ("/problems/invalid-query", "Invalid query string", 400),
     ("/problems/unreadable-body", "Unreadable body", 400),
@@ -21,8 +21,10 @@ const PROBLEMS: [(&str, &str, u16); 22] = [
     ("/problems/request-timeout", "Body too slow", 408),
     ("/problems/payload-too-large", "Payload too large", 413),
     ("/problems/unsupported-media-type", "Unsupported media type", 415),
+    ("/problems/unsupported-coding", "Unsupported content coding", 415),
     ("/problems/invalid-case", "Not a valid case", 422),
     ("/problems/row-limit", "Too many rows", 422),
+    ("/problems/answer-too-large", "Answer too large", 422),
     ("/problems/step-limit", "Too many steps", 422),
     ("/problems/singularity", "Singular equations", 422),
     ("/problems/step-size", "Too stiff to integrate", 422),

@@ -188,8 +188,8 @@ async fn numbers_are_echoed_as_sent() {
         ("9007199254740993", "9007199254740993"),
     ] {
         let answer = service.post_text("/simulate", body.replace("\"MASS\"", sent)).await;
-        assert_eq!(answer.status, StatusCode::OK);
         let text = String::from_utf8(answer.body.to_vec()).unwrap();
+        assert_eq!(answer.status, StatusCode::OK, "{text}");
         assert!(text.contains(&format!("\"mass\":{echoed},")), "{sent}: {text}");
     }
 }

@@ -11,8 +11,8 @@ mod tableau;
 pub use step::{Interpolant, Step, follow};
 
 use std::array::from_fn;
-use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::interrupt::Interrupt;
 use crate::scalar::Lanes;
 
 /// A system of `N` ordinary differential equations.
@@ -76,7 +76,7 @@ pub struct Limits<'a> {
     /// The number of steps, accepted and rejected together.
     pub steps: usize,
     /// Looked at before every step; once true, the integration ends.
-    pub interrupt: &'a AtomicBool,
+    pub interrupt: &'a dyn Interrupt,
 }
 
 /// Advances the state of a system step by step.
@@ -243,7 +243,7 @@ impl<'a, const N: usize> Control<'a, N> {
     fn trial_end(&mut self, end: f64) -> Result<f64, IntegrationError> {
         let Limits { steps: limit, interrupt, .. } = self.limits;
         let time = self.time;
-        if interrupt.load(Ordering::Relaxed) {
+        if interrupt.is_raised() {
             return Err(IntegrationError::Interrupted { time });
         }
         if self.statistics.steps + self.statistics.rejected_steps >= limit {

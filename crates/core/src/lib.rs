@@ -80,6 +80,7 @@ pub mod coordinates;
 
 pub mod integrate;
 pub mod interpolation;
+pub mod interrupt;
 pub mod plain;
 pub mod root;
 pub mod scalar;
@@ -87,6 +88,7 @@ pub mod scalar;
 pub use atmosphere::Atmosphere;
 pub use control::Control;
 pub use coordinates::{FlightPath, PlanetFixed};
+pub use interrupt::Interrupt;
 pub use planet::Planet;
 pub use scenario::{Case, Scenario, Solver, Stop};
 pub use simulate::simulate;

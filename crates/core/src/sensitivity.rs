@@ -7,7 +7,6 @@
 use std::array::from_fn;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use nalgebra::SVector;
 use num_dual::{Dual64, DualSVec64, jacobian};
@@ -16,6 +15,7 @@ use crate::atmosphere::Atmosphere;
 use crate::coordinates::{FlightPath, GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Engine, Quantity, Trigger};
 use crate::integrate::{System, follow};
+use crate::interrupt::Interrupt;
 use crate::motion::{self, Burn, Cartesian, Forces, Formulation, Moment, Parameters, Regime, Spherical, moving};
 use crate::parachute::{Canopies, Canopy};
 use crate::propulsion::Impulse;
@@ -78,7 +78,7 @@ const ON_VALUE: f64 = 1e-6;
 ///
 /// # Errors
 /// When the flag is raised, at which it looks before every step.
-pub fn sensitivities(flight: &Trajectory, interrupt: &AtomicBool) -> Result<Sensitivities, SimulationError> {
+pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Sensitivities, SimulationError> {
     let Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle } =
         flight.case.parameters();
     let [r, theta, phi, v, gamma, psi]: [f64; 6] = FlightPath::from_planet_fixed(&flight.case.initial_state).into();
@@ -166,7 +166,11 @@ impl Gradient {
 /// The end of the flight: time, longitude, geocentric latitude, speed and flight-path angle.
 type Outputs = SVector<Dual, 5>;
 
-fn arrival(flight: &Trajectory, numbers: &[Dual; INPUTS], interrupt: &AtomicBool) -> Result<Outputs, SimulationError> {
+fn arrival(
+    flight: &Trajectory,
+    numbers: &[Dual; INPUTS],
+    interrupt: &dyn Interrupt,
+) -> Result<Outputs, SimulationError> {
     let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, start @ ..] = *numbers;
     let parameters = Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle };
     let start = FlightPath::from(start);
@@ -197,7 +201,7 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     parameters: &Parameters<Dual>,
     formulation: impl Fn(Forces<Dual>) -> M,
     start: &FlightPath<Dual>,
-    interrupt: &AtomicBool,
+    interrupt: &dyn Interrupt,
 ) -> Result<Outputs, SimulationError> {
     let Flown { legs, happenings, end, arrival, .. } = &flight.flown;
     let start = start.to_planet_fixed();
@@ -213,7 +217,7 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     let mut happenings = happenings.iter().peekable();
     for leg in legs {
         let (time, length) = (leg.start_time(), leg.end_time() - leg.start_time());
-        if interrupt.load(Ordering::Relaxed) {
+        if interrupt.is_raised() {
             return Err(SimulationError::Interrupted { time });
         }
         let is_awaited = |happening: &&Happening| happening.before.time <= time && awaited.contains(&happening.event);

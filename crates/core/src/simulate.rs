@@ -10,9 +10,8 @@ mod watch;
 
 pub use abreast::arrivals;
 
-use std::sync::atomic::AtomicBool;
-
 use crate::integrate::Step;
+use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
 use crate::plain::Plain;
 use crate::scenario::{Equations, Phase, Scenario};
@@ -82,7 +81,13 @@ pub enum SimulationError {
         /// Along the radius vector, m.
         altitude: f64,
     },
-    /// The flag was raised.
+    /// The steps that the flight keeps have no room in memory.
+    #[error("no room in memory for the steps after t = {} s", Plain(*.time))]
+    NoRoom {
+        /// The instant reached, s.
+        time: f64,
+    },
+    /// Whoever asked for the flight ended it.
     #[error("interrupted at t = {} s", Plain(*.time))]
     Interrupted {
         /// The instant reached, s.
@@ -111,12 +116,12 @@ fn name(switch: Switch) -> &'static str {
 
 /// Flies the scenario until it crosses the stop altitude downwards, its time is over, or a condition for its end is met.
 ///
-/// `interrupt` is looked at before every step; once it is true, the flight ends with an error.
+/// `interrupt` is asked before every step; once it is raised, the flight ends with an error.
 ///
 /// # Errors
 /// When the flight needs too many or too small steps, when it reaches a singularity of the spherical equations, when thrust burns all
 /// of the vehicle or brakes it to rest, and when interrupted.
-pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajectory, SimulationError> {
+pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     match (case.solver.equations, case.heating) {
         (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), LegStep::Plain, interrupt),
@@ -130,11 +135,11 @@ pub fn simulate(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Trajector
 ///
 /// # Errors
 /// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
-pub fn arrival(scenario: &Scenario, interrupt: &AtomicBool) -> Result<Arrival, SimulationError> {
+pub fn arrival(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Arrival, SimulationError> {
     fn end<F: Formulation<N>, const N: usize>(
         scenario: &Scenario,
         motion: F,
-        interrupt: &AtomicBool,
+        interrupt: &dyn Interrupt,
     ) -> Result<Arrival, SimulationError> {
         fly(&mut Flight::start(scenario, motion, interrupt)?, |_| Ok(()))
     }
@@ -151,7 +156,7 @@ fn record<F: Formulation<N>, const N: usize>(
     scenario: &Scenario,
     motion: F,
     keep: impl Fn(Step<N>) -> LegStep,
-    interrupt: &AtomicBool,
+    interrupt: &dyn Interrupt,
 ) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     let mut flight = Flight::start(scenario, motion, interrupt)?;
@@ -162,6 +167,9 @@ fn record<F: Formulation<N>, const N: usize>(
         extremes.observe(passage)?;
         let regime = passage.motion.forces().regime();
         legs.push(Leg { step: keep(passage.step.clone()), phase: passage.phase, regime });
+        if legs.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(legs.capacity() * size_of::<Leg>()) {
+            return Err(SimulationError::NoRoom { time: passage.step.end_time });
+        }
         Ok(())
     })?;
     let end = flight.instant();
@@ -194,3 +202,6 @@ fn fly<F: Formulation<N>, const N: usize>(
 
 /// Steps for which room is made at once: more than most flights take.
 const TYPICAL_STEPS: usize = 64;
+
+/// Steps that are kept between two looks at what may be held: less than a megabyte.
+const STEPS_BETWEEN_LOOKS: usize = 1024;

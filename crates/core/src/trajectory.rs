@@ -12,7 +12,6 @@ pub(crate) use leg::{Leg, LegStep, Motion};
 
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use ground_track::GroundTrack;
 use leg::LegInterpolant;
@@ -24,6 +23,7 @@ use crate::coordinates::{
 };
 use crate::heating;
 use crate::integrate::Statistics;
+use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical, WIND_FADE_ANGLE};
 use crate::planet::Planet;
 use crate::scenario::{Case, Equations, Phase};
@@ -440,6 +440,11 @@ impl Trajectory {
         self.flown.happenings.iter().map(point)
     }
 
+    /// The bytes that its steps take in memory.
+    pub fn held(&self) -> usize {
+        size_of_val(self.flown.legs.as_slice())
+    }
+
     /// The state at a time, s; before the start it is the initial one, after the end the final one; at an event that after its effect.
     pub fn at(&self, time: f64) -> FlightPoint {
         self.point_of(&self.instant_at(time))
@@ -516,12 +521,12 @@ impl Trajectory {
     }
 
     /// Measures the ground track, on which points rest; otherwise that is done when the first of them is asked for. Returns whether it was
-    /// finished before `interrupt` became true.
-    pub fn measure_ground_track(&self, interrupt: &AtomicBool) -> bool {
+    /// finished before `interrupt` was raised.
+    pub fn measure_ground_track(&self, interrupt: &dyn Interrupt) -> bool {
         if self.ground_track.get().is_some() {
             return true;
         }
-        let track = self.ground_track_until(|| interrupt.load(Ordering::Relaxed));
+        let track = self.ground_track_until(|| interrupt.is_raised());
         track.is_some_and(|track| {
             self.ground_track.get_or_init(|| track);
             true

@@ -1,8 +1,7 @@
 //! How exact a flight is: beside a finer one, and by its balance of energy.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use crate::coordinates::PlanetFixed;
+use crate::interrupt::Interrupt;
 use crate::motion::Power;
 use crate::scenario::{Bound, Case, Scenario};
 use crate::simulate::{SimulationError, arrival};
@@ -33,7 +32,7 @@ pub struct Verification {
 pub fn verify(
     scenario: &Scenario,
     flight: &Trajectory,
-    interrupt: &AtomicBool,
+    interrupt: &dyn Interrupt,
 ) -> Result<Verification, SimulationError> {
     let relative_tolerance = (scenario.case().solver.relative_tolerance / 100.0).max(Bound::RELATIVE_TOLERANCE.minimum);
     let finer = arrival(&scenario.finer(relative_tolerance), interrupt)?;
@@ -56,14 +55,14 @@ pub fn verify(
 ///
 /// with the potential U of gravity; an impulse adds what it adds to V²/2. Without wind, lift and the Coriolis force are across the
 /// velocity; the energy is Jameson 2006, equation 29, integrated once.
-fn energy_balance(flight: &Trajectory, interrupt: &AtomicBool) -> Result<(f64, Power), SimulationError> {
+fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64, Power), SimulationError> {
     let energy = |state: &PlanetFixed<f64>| energy(&flight.case, state);
     let mut given = energy(&flight.case.initial_state);
     let (mut drift, mut work) = (0.0_f64, Power { drag: 0.0, thrust: 0.0 });
     let mut happenings = flight.flown.happenings.iter().peekable();
     for leg in &flight.flown.legs {
         let (start, end) = (leg.start_time(), leg.end_time());
-        if interrupt.load(Ordering::Relaxed) {
+        if interrupt.is_raised() {
             return Err(SimulationError::Interrupted { time: start });
         }
         while let Some(happening) = happenings.next_if(|happening| happening.before.time <= start) {

@@ -1,9 +1,9 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use reentry::Interrupt;
 use reentry::integrate::Statistics;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{SimulationError, simulate as fly};
@@ -15,6 +15,7 @@ use crate::error::ApiError;
 use crate::format::Format;
 use crate::metrics::Work;
 use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
+use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::scenario::{Job, Wanted};
 use crate::wire::sensitivities::Sensitivities;
@@ -35,7 +36,7 @@ pub struct Answer {
 ///
 /// # Errors
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
-pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
+pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let job = Job::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
     let start = Instant::now();
     let flight = fly(&job.scenario, interrupt)?;
@@ -43,12 +44,13 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     if !flight.measure_ground_track(interrupt) {
         return Err(ApiError::Interrupted);
     }
-    let points = rows(&job, &flight, row_limit, interrupt)?;
+    let mut held = Held::new(&flight, interrupt);
+    let points = rows(&job, &flight, row_limit, &mut held)?;
     let work = work(&flight, points.as_deref());
     let extras = extras(&job, &flight, interrupt)?;
     let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
     let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
-    let mut out = Written::new(interrupt);
+    let mut out = Written::new(held);
     let written = match (format, &response.trajectory) {
         (Format::Csv, Some(rows)) => rows.write_csv(&mut out),
         (Format::Geojson, Some(rows)) => track(rows)?.write_geojson(&mut out),
@@ -75,7 +77,7 @@ fn wanted(format: Format) -> Wanted {
 }
 
 /// What a job asks for beyond the flight.
-fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extras, SimulationError> {
+fn extras(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Extras, SimulationError> {
     let request = &job.request;
     let mut extras = Extras::default();
     if request.sensitivities {
@@ -96,17 +98,14 @@ fn extras(job: &Job, flight: &Trajectory, interrupt: &AtomicBool) -> Result<Extr
 }
 
 /// The rows for which a job asks.
-fn rows(
-    job: &Job,
-    flight: &Trajectory,
-    limit: usize,
-    interrupt: &AtomicBool,
-) -> Result<Option<Vec<FlightPoint>>, ApiError> {
+fn rows(job: &Job, flight: &Trajectory, limit: usize, held: &mut Held) -> Result<Option<Vec<FlightPoint>>, ApiError> {
     let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
+    let columns = job.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
+    held.reserve_rows(instants.len(), columns)?;
     let mut points = Vec::with_capacity(instants.len());
     for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
-        if interrupt.load(Ordering::Relaxed) {
+        if held.interrupt.is_raised() {
             return Err(ApiError::Interrupted);
         }
         points.extend(flight.points(instants));
@@ -124,9 +123,9 @@ const ROWS_BETWEEN_LOOKS: usize = 2048;
 ///
 /// # Errors
 /// When the state is not sound.
-pub fn convert(tree: Value, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
+pub fn convert(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let response = ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?;
-    let mut out = Written::new(interrupt);
+    let mut out = Written::new(Held::nothing(interrupt));
     let written = serde_json::to_writer(&mut out, &response);
     Ok(Answer { body: out.whole(written)?, work: Work::default() })
 }
@@ -135,24 +134,64 @@ pub fn convert(tree: Value, interrupt: &AtomicBool) -> Result<Answer, ApiError> 
 ///
 /// # Errors
 /// When the case is not sound, the theory does not apply, and as [`simulate`] otherwise.
-pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
+pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let analytic = AnalyticJob::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
     let flight = fly(&analytic.job.scenario, interrupt)?;
-    let points = rows(&analytic.job, &flight, row_limit, interrupt)?.unwrap_or_default();
+    let mut held = Held::new(&flight, interrupt);
+    let points = rows(&analytic.job, &flight, row_limit, &mut held)?.unwrap_or_default();
     let work = work(&flight, Some(&points));
     let extras = extras(&analytic.job, &flight, interrupt)?;
     let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, comparison, extras);
-    let mut out = Written::new(interrupt);
+    let mut out = Written::new(held);
     let written =
         if format == Format::Csv { response.write_csv(&mut out) } else { serde_json::to_writer(&mut out, &response) };
     Ok(Answer { body: out.whole(written)?, work })
 }
 
-/// Text that is being written until a flag is raised.
+/// What an answer holds in memory while it is made, beside its text.
+struct Held<'a> {
+    interrupt: &'a dyn Interrupt,
+    /// The steps of the flight, and its rows.
+    bytes: usize,
+    /// What may be held, the text included.
+    reserved: usize,
+}
+
+/// What a number takes in the text, bytes; for a map as many are reserved, which hold its places and their text.
+const NUMBER: usize = 20;
+
+impl<'a> Held<'a> {
+    fn nothing(interrupt: &'a dyn Interrupt) -> Self {
+        Self { interrupt, bytes: 0, reserved: 0 }
+    }
+
+    fn new(flight: &Trajectory, interrupt: &'a dyn Interrupt) -> Self {
+        let bytes = flight.held();
+        Self { interrupt, bytes, reserved: bytes }
+    }
+
+    /// Reserves what rows take, and their text, at once: who has one part and waits for the other would be in the way of others.
+    fn reserve_rows(&mut self, rows: usize, columns: usize) -> Result<(), ApiError> {
+        self.bytes += rows * size_of::<FlightPoint>();
+        self.reserve(self.bytes + rows * columns * NUMBER)
+    }
+
+    fn reserve(&mut self, bytes: usize) -> Result<(), ApiError> {
+        if bytes > self.reserved {
+            if !self.interrupt.may_hold(bytes) {
+                return Err(ApiError::Interrupted);
+            }
+            self.reserved = bytes;
+        }
+        Ok(())
+    }
+}
+
+/// Text that is being written until a flag is raised, or there is no memory for it.
 struct Written<'a> {
     text: Vec<u8>,
-    interrupt: &'a AtomicBool,
+    held: Held<'a>,
     /// The length at which the flag is looked at next.
     look: usize,
 }
@@ -161,8 +200,8 @@ struct Written<'a> {
 const BYTES_BETWEEN_LOOKS: usize = 1 << 18;
 
 impl<'a> Written<'a> {
-    fn new(interrupt: &'a AtomicBool) -> Self {
-        Self { text: Vec::new(), interrupt, look: BYTES_BETWEEN_LOOKS }
+    fn new(held: Held<'a>) -> Self {
+        Self { text: Vec::new(), held, look: BYTES_BETWEEN_LOOKS }
     }
 
     /// The text, if it was written to its end: memory can always be written, so that only the flag ends it early.
@@ -180,7 +219,7 @@ impl Write for Written<'_> {
         self.text.extend_from_slice(bytes);
         if self.text.len() >= self.look {
             self.look = self.text.len() + BYTES_BETWEEN_LOOKS;
-            if self.interrupt.load(Ordering::Relaxed) {
+            if self.held.interrupt.is_raised() || self.held.reserve(self.held.bytes + self.look).is_err() {
                 // Not `Interrupted`, after which writers try again.
                 return Err(io::ErrorKind::Other.into());
             }

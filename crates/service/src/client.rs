@@ -1,6 +1,6 @@
 //! Who asks: the address of the connection or, by the word of a proxy that is trusted, of the client behind it.
 
-use std::net::{IpAddr, SocketAddr};
+use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 
 use axum::http::{Extensions, HeaderMap, HeaderName, header};
 use ipnet::IpNet;
@@ -13,12 +13,48 @@ pub struct Peer(pub SocketAddr);
 
 const X_FORWARDED_FOR: HeaderName = HeaderName::from_static("x-forwarded-for");
 
-/// The client of a request; none where it came on no connection.
+/// A client, as the limits tell clients apart; those whose address is not known are one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Client(Option<IpAddr>);
+
+impl Client {
+    /// The client of a request that [`client`] has put into its extensions.
+    pub fn of(extensions: &Extensions) -> Self {
+        extensions.get().copied().unwrap_or_default()
+    }
+
+    /// Its address.
+    pub fn address(self) -> Option<IpAddr> {
+        self.0
+    }
+
+    /// Its network: the /64 of an address of IPv6, in which a client has as many addresses as it likes; an address of IPv4 is one client.
+    #[must_use]
+    pub fn network(self) -> Self {
+        self.within(64)
+    }
+
+    /// Its site: the /48 of an address of IPv6, in which a site has 65 536 networks.
+    #[must_use]
+    pub fn site(self) -> Self {
+        self.within(48)
+    }
+
+    /// The network with a prefix of so many bits, where the address is one of IPv6.
+    fn within(self, prefix: u32) -> Self {
+        Self(self.0.map(|address| match address {
+            IpAddr::V4(_) => address,
+            IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() & (u128::MAX << (128 - prefix))).into(),
+        }))
+    }
+}
+
+/// The client of a request, whose address is not known where it came on no connection.
 ///
 /// Each proxy adds the address from which it was asked to the end of the header. The addresses are read from there as long as it is a
 /// trusted proxy that has written them: what a client writes itself is never believed.
-pub fn client(extensions: &Extensions, headers: &HeaderMap, config: &Config) -> Option<IpAddr> {
-    let Peer(peer) = extensions.get()?;
+pub fn client(extensions: &Extensions, headers: &HeaderMap, config: &Config) -> Client {
+    let Some(Peer(peer)) = extensions.get() else { return Client::default() };
     let is_trusted = |address: &IpAddr| config.trusted_proxies.iter().any(|network: &IpNet| network.contains(address));
     let mut client = peer.ip().to_canonical();
     let forwarded = match config.forwarded_header {
@@ -32,7 +68,7 @@ pub fn client(extensions: &Extensions, headers: &HeaderMap, config: &Config) -> 
             _ => break,
         }
     }
-    Some(client)
+    Client(Some(client))
 }
 
 /// The items of a list in a header, which may have several lines.
@@ -75,7 +111,7 @@ mod tests {
         for (name, value) in lines {
             headers.append(HeaderName::from_static(name), HeaderValue::from_static(value));
         }
-        client(&extensions, &headers, &config).unwrap()
+        client(&extensions, &headers, &config).address().unwrap()
     }
 
     #[test]

@@ -1,13 +1,16 @@
-//! The coding of an answer: which one the client likes best (RFC 9110, section 12.5.3), and the bytes in it.
+//! The coding of an answer: which one the client likes best (RFC 9110, section 12.5.3), and the bytes in it; and the text of a body that
+//! came in a coding.
 
 use std::fmt;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::mem;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use axum::http::{HeaderMap, header};
 use flate2::Compression;
+use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
+use reentry::Interrupt;
+use zstd::stream::read::Decoder as ZstdDecoder;
 use zstd::stream::write::Encoder as ZstdEncoder;
 
 /// How the bytes of an answer are written.
@@ -107,9 +110,9 @@ impl Encoder {
     ///
     /// # Errors
     /// When it is.
-    pub fn write(&mut self, bytes: &[u8], interrupt: &AtomicBool) -> io::Result<()> {
+    pub fn write(&mut self, bytes: &[u8], interrupt: &dyn Interrupt) -> io::Result<()> {
         for chunk in bytes.chunks(CHUNK) {
-            if interrupt.load(Ordering::Relaxed) {
+            if interrupt.is_raised() {
                 return Err(io::ErrorKind::Other.into());
             }
             match self {
@@ -154,3 +157,48 @@ impl Encoder {
 
 /// The fastest.
 const ZSTD_LEVEL: i32 = 1;
+
+/// Why a body has no text.
+#[derive(Debug)]
+pub enum InflateError<E> {
+    /// It is not what its coding says.
+    Unreadable(io::Error),
+    /// The text is not wanted any more.
+    Refused(E),
+}
+
+/// The text of a body in a coding. `grow` is asked every [`CHUNK`] whether the text may become so long.
+///
+/// # Errors
+/// When the body is not what its coding says, and those of `grow`.
+pub fn inflate<E>(
+    coding: Coding,
+    body: &[u8],
+    mut grow: impl FnMut(usize) -> Result<(), E>,
+) -> Result<Vec<u8>, InflateError<E>> {
+    let mut reader = decoder(coding, body).map_err(InflateError::Unreadable)?;
+    let (mut text, mut chunk) = (Vec::new(), vec![0; CHUNK]);
+    loop {
+        let length = reader.read(&mut chunk).map_err(InflateError::Unreadable)?;
+        if length == 0 {
+            return Ok(text);
+        }
+        grow(text.len() + length).map_err(InflateError::Refused)?;
+        text.extend_from_slice(&chunk[..length]);
+    }
+}
+
+fn decoder(coding: Coding, body: &[u8]) -> io::Result<Box<dyn Read + '_>> {
+    Ok(match coding {
+        Coding::Identity | Coding::Brotli => Box::new(body),
+        Coding::Gzip => Box::new(MultiGzDecoder::new(body)),
+        Coding::Zstd => {
+            let mut decoder = ZstdDecoder::with_buffer(body)?;
+            decoder.window_log_max(ZSTD_WINDOW)?;
+            Box::new(decoder)
+        }
+    })
+}
+
+/// The window that a frame may ask for, as a power of two: 8 MiB, which is what RFC 8878 has decoders support.
+const ZSTD_WINDOW: u32 = 23;

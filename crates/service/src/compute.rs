@@ -1,23 +1,33 @@
 //! The pool of blocking threads on which every job runs: bounded, with a deadline, and cancelled when nobody waits any more.
 //!
 //! Single jobs and batches have workers of their own, so that neither waits for the other: what both compute at once, the system divides
-//! between them. The jobs of all batches take turns.
+//! between them. Jobs that have computed for long give way to others, where they look at their flag: see [`Task`].
+
+mod slots;
+mod turns;
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, mpsc::sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc::sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use tokio::runtime::{Builder, Runtime};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
+use bytes::Bytes;
+use reentry::Interrupt;
+use tokio::runtime::{Builder, Handle, Runtime};
+use tokio::sync::mpsc::error::TrySendError;
+use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore, mpsc};
 use tokio::time::{Instant, timeout};
 use tracing::{Instrument, Span};
 
+use crate::client::Client;
 use crate::config::{Config, processors};
 use crate::error::ApiError;
-use crate::memory::Memory;
+use crate::memory::{HURRY, Memory, Permit};
 use crate::metrics::Metrics;
+use crate::rate::RateLimit;
+use slots::{Slot, Slots};
+use turns::{Turn, Turns, level};
 
 /// A runtime of its own whose blocking threads compute; the threads that talk to clients never do.
 #[derive(Debug)]
@@ -26,17 +36,16 @@ pub struct Compute {
     singles: Pool,
     /// Of batches.
     shared: Pool,
-    /// For single jobs, waiting or running.
+    /// For single jobs that wait, or have not yet given way.
     places: Arc<Semaphore>,
-    /// For batches under way.
-    batches: Arc<Semaphore>,
-    /// The workers that a batch waits for.
-    turns: Arc<Semaphore>,
+    /// For batches that compute.
+    slots: Slots,
     /// What a job may take, its waiting included.
     deadline: Duration,
-    /// Where the answers count that have not been sent.
-    memory: Arc<Memory>,
+    /// Where bodies and answers count.
+    memory: Memory,
     metrics: Arc<Metrics>,
+    rate_limit: Option<Arc<RateLimit>>,
 }
 
 impl Compute {
@@ -44,75 +53,87 @@ impl Compute {
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub fn new(config: &Config, memory: Arc<Memory>, metrics: Arc<Metrics>) -> std::io::Result<Self> {
+    pub fn new(
+        config: &Config,
+        memory: Memory,
+        metrics: Arc<Metrics>,
+        rate_limit: Option<Arc<RateLimit>>,
+    ) -> std::io::Result<Self> {
         let workers = config.workers();
-        let shared = workers.saturating_sub(1).max(1);
         Ok(Self {
-            singles: Pool::new("reentry-single", workers)?,
-            shared: Pool::new("reentry-batch", shared)?,
+            singles: Pool::new("reentry-single", workers, config.queue)?,
+            shared: Pool::new("reentry-batch", workers.saturating_sub(1).max(1), config.batches)?,
             places: Arc::new(Semaphore::new(workers + config.queue)),
-            batches: Arc::new(Semaphore::new(config.batches)),
-            turns: Arc::new(Semaphore::new(shared)),
+            slots: Slots::new(config.batches),
             deadline: config.deadline,
             memory,
             metrics,
+            rate_limit,
         })
     }
 
-    /// Runs a job of a route, which is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
+    /// Runs a job of a route for a client. It is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
     ///
     /// # Errors
-    /// The job's own; [`ApiError::Busy`] at once when all places are taken, or when the memory is full; [`ApiError::DeadlineExceeded`];
-    /// [`ApiError::Internal`] when the job panics.
-    pub async fn run<T, F>(&self, route: &'static str, job: F) -> Result<T, ApiError>
+    /// The job's own; [`ApiError::Busy`] at once when all places are taken, or when the memory is full; [`ApiError::TooManyRequests`] when
+    /// the client holds its share of it; [`ApiError::DeadlineExceeded`]; [`ApiError::Internal`] when the job panics.
+    pub async fn run<T, F>(&self, route: &'static str, client: Client, job: F) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
     {
         let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| ApiError::Busy)?;
-        self.work(&self.singles, route, place, job, self.deadline).await
+        self.work(&self.singles, (route, client), Some(place), job, self.deadline).await
     }
 
     /// Runs the jobs of a batch one after another and gives their results in order, those that the time does not suffice for
     /// as [`ApiError::DeadlineExceeded`].
     ///
-    /// Nothing is computed further ahead than one job before the result that is taken next. Where none is taken for as long as a
-    /// job may run, or the receiver is dropped, the batch ends: the channel then closes early.
+    /// Nothing is computed further ahead than one job before the result that is taken next, and a batch whose results are not taken
+    /// is in nobody's way. Where none is taken for as long as a job may run, or the receiver is dropped, the batch ends: the channel
+    /// then closes early.
     ///
     /// # Errors
-    /// [`ApiError::Busy`] when all places for batches are taken.
+    /// [`ApiError::Busy`] when as many batches compute as may, and [`ApiError::TooManyRequests`] when as many of this client do.
     pub fn run_batch<T, F>(
         self: &Arc<Self>,
         route: &'static str,
+        client: Client,
         jobs: Vec<F>,
         time: Duration,
     ) -> Result<mpsc::Receiver<Result<T, ApiError>>, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
     {
-        let place = Arc::clone(&self.batches).try_acquire_owned().map_err(|_| ApiError::Busy)?;
+        let mut slot = Some(self.slots.try_take(client)?);
         let start = Instant::now();
         let compute = Arc::clone(self);
         let (results, receiver) = mpsc::channel(1);
         let run_all = async move {
-            let mut place = Some(place);
             for job in jobs {
-                let left = time.saturating_sub(start.elapsed());
+                let left = || time.saturating_sub(start.elapsed());
                 let result = tokio::select! {
                     () = results.closed() => return,
-                    result = compute.share(route, job, left) => result,
+                    result = compute.share_of_batch((route, client), &mut slot, job, left()) => result,
                 };
                 let result = match result {
-                    Err(ApiError::DeadlineExceeded { .. }) if start.elapsed() >= time => {
-                        // Nothing more is computed: the place is for another, however slowly the rest is read.
-                        drop(place.take());
+                    Err(ApiError::DeadlineExceeded { .. }) if left().is_zero() => {
+                        slot = None;
                         Err(ApiError::DeadlineExceeded { seconds: time.as_secs_f64() })
                     }
                     result => result,
                 };
-                if !matches!(timeout(compute.deadline, results.send(result)).await, Ok(Ok(()))) {
-                    return;
+                match results.try_send(result) {
+                    Ok(()) => {}
+                    Err(TrySendError::Closed(_)) => return,
+                    Err(TrySendError::Full(result)) => {
+                        // Nothing is computed until the reader has taken something: the slot is for another.
+                        slot = None;
+                        if !matches!(timeout(compute.patience(), results.send(result)).await, Ok(Ok(()))) {
+                            return;
+                        }
+                    }
                 }
             }
         };
@@ -120,90 +141,140 @@ impl Compute {
         Ok(receiver)
     }
 
+    /// How long a batch waits for its reader: not at all long where bodies of batches take much memory.
+    fn patience(&self) -> Duration {
+        if self.memory.batch_bodies.is_tight() { self.deadline.min(HURRY) } else { self.deadline }
+    }
+
+    async fn share_of_batch<T, F>(
+        &self,
+        (route, client): (&'static str, Client),
+        slot: &mut Option<Slot>,
+        job: F,
+        left: Duration,
+    ) -> Result<T, ApiError>
+    where
+        T: Send + 'static,
+        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
+    {
+        let start = Instant::now();
+        if slot.is_none() && !left.is_zero() {
+            let again = timeout(left, self.slots.take(client)).await;
+            *slot = again.map_err(|_| ApiError::DeadlineExceeded { seconds: left.as_secs_f64() })?;
+        }
+        self.share(route, client, job, left.saturating_sub(start.elapsed())).await
+    }
+
     /// Runs a job of a batch that has so much time left, when its turn comes.
     ///
     /// # Errors
     /// As [`Compute::run`], but that it waits for a place.
-    pub async fn share<T, F>(&self, route: &'static str, job: F, left: Duration) -> Result<T, ApiError>
+    pub async fn share<T, F>(&self, route: &'static str, client: Client, job: F, left: Duration) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
     {
-        let start = Instant::now();
-        let out_of_time = || ApiError::DeadlineExceeded { seconds: left.as_secs_f64() };
         if left.is_zero() {
-            return Err(out_of_time());
+            return Err(ApiError::DeadlineExceeded { seconds: 0.0 });
         }
-        let worker = timeout(left, Arc::clone(&self.turns).acquire_owned()).await.map_err(|_| out_of_time())?;
-        let left = left.saturating_sub(start.elapsed());
-        self.work(&self.shared, route, worker.map_err(|_| ApiError::Internal)?, job, left.min(self.deadline)).await
+        self.work(&self.shared, (route, client), None, job, left).await
     }
 
+    /// Runs a job, in the time that is left: all of it until it begins, and from then on no more than a job may take.
     async fn work<T, F>(
         &self,
         pool: &Pool,
-        route: &'static str,
-        place: OwnedSemaphorePermit,
+        (route, client): (&'static str, Client),
+        place: Option<OwnedSemaphorePermit>,
         job: F,
-        allowed: Duration,
+        left: Duration,
     ) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&AtomicBool) -> Result<T, ApiError> + Send + 'static,
+        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
     {
-        let caller = Caller(Arc::default());
-        let call = Arc::clone(&caller.0);
-        let (memory, metrics) = (Arc::clone(&self.memory), Arc::clone(&self.metrics));
-        metrics.job_queued();
+        let late = || ApiError::DeadlineExceeded { seconds: self.deadline.min(left).as_secs_f64() };
         let asked = Instant::now();
+        let mut queued = Queued::new(route, &self.metrics);
+        let Ok(turn) = timeout(left, pool.turns.ask(0, false)).await else {
+            queued.cause = "deadline";
+            return Err(late());
+        };
+        queued.begun(asked.elapsed());
+        let left = left.saturating_sub(asked.elapsed()).min(self.deadline);
+        let caller = Caller(Arc::default());
+        let task = Task {
+            call: Arc::clone(&caller.0),
+            route,
+            client,
+            turns: Arc::clone(&pool.turns),
+            suspended: Arc::clone(&pool.suspended),
+            state: Mutex::new(State {
+                turn: turn.ok(),
+                level: 0,
+                since: Instant::now(),
+                computed: Duration::ZERO,
+                place,
+                was_suspended: false,
+                permit: Some(self.memory.answers.permit(client)),
+                was_refused: false,
+                refusal: None,
+            }),
+            metrics: Arc::clone(&self.metrics),
+            rate_limit: self.rate_limit.clone(),
+        };
+        let memory = self.memory.clone();
         let handle = pool.threads()?.spawn_blocking(move || {
-            // The place is free again when the job has ended, not when its caller has gone.
-            let _place = place;
-            metrics.job_begun(route, asked.elapsed());
-            let running = Running { route, call: &call, metrics: &metrics, start: Instant::now() };
-            if running.is_wanted() {
-                Some(if memory.is_full() { Err(ApiError::Busy) } else { job(&call.interrupt) })
-            } else {
-                None
-            }
+            let result = memory.answers.admit(client).map_err(ApiError::from).and_then(|()| job(&task));
+            // A job that was ended does not know why.
+            let refusal = task.lock().refusal.take();
+            refusal.map_or(result, Err)
         });
-        match timeout(allowed, handle).await {
-            Ok(Ok(Some(result))) => result,
-            Ok(Ok(None)) => Err(ApiError::Internal),
+        match timeout(left, handle).await {
+            Ok(Ok(result)) => result,
             Ok(Err(panic)) => {
                 tracing::error!(%panic, "a job panicked");
                 Err(ApiError::Internal)
             }
             Err(_) => {
                 caller.0.is_late.store(true, Ordering::Relaxed);
-                Err(ApiError::DeadlineExceeded { seconds: self.deadline.as_secs_f64() })
+                Err(late())
             }
         }
     }
 
-    /// Whether a single job would find a place.
+    /// Whether a single job would find a place, and memory for its body and its answer.
     pub fn has_room(&self) -> bool {
-        self.places.available_permits() > 0
+        self.places.available_permits() > 0 && !self.memory.bodies.is_full() && !self.memory.answers.is_full()
     }
 }
 
-/// Threads that compute, in the order in which they are asked.
+/// Threads that compute, as many at once as have a turn.
 #[derive(Debug)]
 struct Pool {
     /// Some until dropped.
     threads: Option<Runtime>,
+    turns: Arc<Turns>,
+    /// For jobs that have given way.
+    suspended: Arc<Semaphore>,
 }
 
 impl Pool {
-    fn new(name: &str, threads: usize) -> std::io::Result<Self> {
-        let threads = Builder::new_current_thread().max_blocking_threads(threads).thread_name(name).build()?;
-        Ok(Self { threads: Some(threads) })
+    /// As many workers, and as many jobs beside them that may be suspended.
+    fn new(name: &str, workers: usize, suspended: usize) -> std::io::Result<Self> {
+        let suspended = suspended.min(MOST_SUSPENDED);
+        let threads =
+            Builder::new_current_thread().max_blocking_threads(workers + suspended).thread_name(name).build()?;
+        Ok(Self { threads: Some(threads), turns: Turns::new(workers), suspended: Arc::new(Semaphore::new(suspended)) })
     }
 
     fn threads(&self) -> Result<&Runtime, ApiError> {
         self.threads.as_ref().ok_or(ApiError::Internal)
     }
 }
+
+/// Jobs that may be suspended at once, each of which has a thread.
+const MOST_SUSPENDED: usize = 256;
 
 impl Drop for Pool {
     fn drop(&mut self) {
@@ -213,11 +284,42 @@ impl Drop for Pool {
     }
 }
 
+/// A job that waits for its first turn; counted as cancelled when it is dropped before it has begun.
+struct Queued<'a> {
+    route: &'static str,
+    metrics: &'a Metrics,
+    has_begun: bool,
+    cause: &'static str,
+}
+
+impl<'a> Queued<'a> {
+    fn new(route: &'static str, metrics: &'a Metrics) -> Self {
+        metrics.job_queued();
+        Self { route, metrics, has_begun: false, cause: "disconnect" }
+    }
+
+    fn begun(&mut self, waited: Duration) {
+        self.metrics.job_begun(self.route, waited);
+        self.has_begun = true;
+    }
+}
+
+impl Drop for Queued<'_> {
+    fn drop(&mut self) {
+        if !self.has_begun {
+            self.metrics.job_left_queue();
+            self.metrics.job_cancelled(self.route, self.cause);
+        }
+    }
+}
+
 /// What a job and the one who waits for it have in common.
 #[derive(Debug, Default)]
 struct Call {
     /// Raised when nobody waits any more.
     interrupt: AtomicBool,
+    /// Tells a suspended job so.
+    given_up: Notify,
     /// Whether that is because the time ran out.
     is_late: AtomicBool,
 }
@@ -228,30 +330,150 @@ struct Caller(Arc<Call>);
 impl Drop for Caller {
     fn drop(&mut self) {
         self.0.interrupt.store(true, Ordering::Relaxed);
+        self.0.given_up.notify_one();
     }
 }
 
-/// A job that a worker has; counted when it is over, by a panic too.
-struct Running<'a> {
+/// A job that runs, and looks at its flag: there it gives way to all that have computed less, and goes on when its turn comes again.
+///
+/// It holds memory for its answer, and where there is none, it is suspended until there is.
+#[derive(Debug)]
+pub struct Task {
+    call: Arc<Call>,
     route: &'static str,
-    call: &'a Call,
-    metrics: &'a Metrics,
-    start: Instant,
+    client: Client,
+    turns: Arc<Turns>,
+    suspended: Arc<Semaphore>,
+    state: Mutex<State>,
+    metrics: Arc<Metrics>,
+    rate_limit: Option<Arc<RateLimit>>,
 }
 
-impl Running<'_> {
-    fn is_wanted(&self) -> bool {
-        !self.call.interrupt.load(Ordering::Relaxed)
+/// What of a job changes while it runs.
+#[derive(Debug)]
+struct State {
+    turn: Option<Turn>,
+    /// At which it has its turn.
+    level: usize,
+    /// The instant from which it has its turn.
+    since: Instant,
+    /// Before that.
+    computed: Duration,
+    /// Its place in the queue or, once it has given way, among the suspended.
+    place: Option<OwnedSemaphorePermit>,
+    was_suspended: bool,
+    /// None once its answer is there.
+    permit: Option<Permit>,
+    /// Whether it was ended for another reason than that nobody waits.
+    was_refused: bool,
+    /// That reason, until it is told.
+    refusal: Option<ApiError>,
+}
+
+impl Task {
+    /// The bytes of its answer, which count as held until the last that refers to them is gone.
+    pub fn keep(&self, mut bytes: Vec<u8>) -> Bytes {
+        bytes.shrink_to_fit();
+        match self.lock().permit.take() {
+            Some(permit) => permit.keep(bytes),
+            None => bytes.into(),
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.call.interrupt.load(Ordering::Relaxed)
+    }
+
+    /// Ends the job.
+    fn refuse(&self, state: &mut State, refusal: ApiError) {
+        state.refusal = Some(refusal);
+        state.was_refused = true;
+        self.call.interrupt.store(true, Ordering::Relaxed);
+    }
+
+    /// Gives way to those who wait on a level, if they have computed less.
+    fn give_way(&self, first_waiting: usize) {
+        let mut state = self.lock();
+        let level = level(state.computed + state.since.elapsed());
+        if first_waiting < level {
+            let again = level == state.level;
+            state.level = level;
+            self.suspend(&mut state, again, Duration::ZERO);
+        }
+    }
+
+    /// Suspends the job for a pause at least, and until its turn comes.
+    fn suspend(&self, state: &mut State, again: bool, pause: Duration) {
+        if !state.was_suspended {
+            let Ok(place) = Arc::clone(&self.suspended).try_acquire_owned() else {
+                return self.refuse(state, ApiError::Busy);
+            };
+            state.place = Some(place);
+            state.was_suspended = true;
+        }
+        state.computed += state.since.elapsed();
+        state.turn = None;
+        self.metrics.job_suspended();
+        thread::sleep(pause);
+        let turn = self.turns.ask(state.level, again);
+        state.turn = Handle::current().block_on(async {
+            tokio::select! {
+                biased;
+                () = self.call.given_up.notified() => None,
+                turn = turn => turn.ok(),
+            }
+        });
+        self.metrics.job_resumed();
+        state.since = Instant::now();
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Drop for Running<'_> {
+/// Between two looks of a job that waits for memory.
+const LOOK: Duration = Duration::from_millis(10);
+
+impl Interrupt for Task {
+    fn is_raised(&self) -> bool {
+        if !self.is_over()
+            && let Some(first) = self.turns.first_waiting()
+        {
+            self.give_way(first);
+        }
+        self.is_over()
+    }
+
+    fn may_hold(&self, bytes: usize) -> bool {
+        let mut state = self.lock();
+        while !self.is_over() {
+            let Some(permit) = &mut state.permit else { return true };
+            let limit = permit.largest();
+            if bytes > limit {
+                self.refuse(&mut state, ApiError::TooLarge { limit });
+            } else if permit.try_reserve(bytes).is_ok() {
+                return true;
+            } else {
+                self.suspend(&mut state, true, LOOK);
+            }
+        }
+        false
+    }
+}
+
+impl Drop for Task {
     fn drop(&mut self) {
-        if !self.is_wanted() {
+        let state = self.state.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if self.call.interrupt.load(Ordering::Relaxed) && !state.was_refused {
             let is_late = self.call.is_late.load(Ordering::Relaxed);
             self.metrics.job_cancelled(self.route, if is_late { "deadline" } else { "disconnect" });
         }
-        self.metrics.job_over(self.route, self.start.elapsed());
+        let computed = state.computed + state.since.elapsed();
+        self.metrics.job_over(self.route, computed);
+        if let Some(limit) = &self.rate_limit {
+            limit.charge(self.client, computed);
+        }
     }
 }
 

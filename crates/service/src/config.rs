@@ -52,7 +52,8 @@ pub struct Config {
     #[arg(long, env = "REENTRY_COMPRESS_ABOVE", default_value_t = 16_384)]
     pub compress_above: u64,
 
-    /// Bytes that bodies on their way in and answers on their way out may have together; what is begun beyond is refused with 503
+    /// Bytes that bodies and answers may have: bodies of batches an eighth, others a sixteenth, answers the rest; one client half of each.
+    /// More is refused with 503, or with 429 where others find room
     #[arg(long, env = "REENTRY_MEMORY", default_value_t = 256 << 20)]
     pub memory: usize,
 
@@ -101,6 +102,12 @@ pub struct Config {
     pub log_format: LogFormat,
 }
 
+/// The bodies of batches may have one part in so many of the memory.
+pub const BATCH_BODIES: usize = 8;
+
+/// All other bodies may have one part in so many of the memory.
+pub const BODIES: usize = 16;
+
 /// How a log line looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LogFormat {
@@ -134,11 +141,12 @@ impl Config {
     /// # Errors
     /// With the settings and what they should be.
     pub fn check(&self) -> Result<(), String> {
-        let longest = self.body_limit.max(self.batch_body_limit);
-        if self.memory < longest {
+        let least = self.body_limit.saturating_mul(BODIES).max(self.batch_body_limit.saturating_mul(BATCH_BODIES));
+        if self.memory < least {
             let memory = self.memory;
             return Err(format!(
-                "--memory, {memory} bytes, must be at least --body-limit and --batch-body-limit, {longest} bytes"
+                "--memory, {memory} bytes, must be at least {BODIES} times --body-limit and {BATCH_BODIES} times --batch-body-limit, \
+                 {least} bytes"
             ));
         }
         if self.metrics_listen == Some(self.listen) && self.listen.port() != 0 {

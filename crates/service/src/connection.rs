@@ -11,19 +11,13 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, Sleep, sleep};
 
-use crate::memory::Memory;
-
-/// The slowest that a client may take a long answer, bytes a second.
-const SLOWEST: f64 = 16_384.0;
-
-/// How often an answer that is not taken is looked after; how long it is waited for where memory is short.
-const TICK: Duration = Duration::from_secs(1);
+use crate::memory::{Budget, HURRY, SLOWEST};
 
 /// A stream of bytes that gives a client up that does not take what is sent to it.
 #[derive(Debug)]
 pub struct PatientStream {
     stream: TcpStream,
-    memory: Arc<Memory>,
+    answers: Arc<Budget>,
     /// How long nothing may be taken.
     patience: Duration,
     stall: Option<Stall>,
@@ -60,8 +54,8 @@ struct Stall {
 
 impl PatientStream {
     /// The stream of a client that may take nothing for so long.
-    pub fn new(stream: TcpStream, patience: Duration, memory: Arc<Memory>) -> Self {
-        Self { stream, memory, patience, stall: None, signs: Arc::default() }
+    pub fn new(stream: TcpStream, patience: Duration, answers: Arc<Budget>) -> Self {
+        Self { stream, answers, patience, stall: None, signs: Arc::default() }
     }
 
     /// What will be known of the client.
@@ -95,11 +89,11 @@ impl PatientStream {
     #[expect(clippy::cast_precision_loss, reason = "an answer has far less than 2^52 bytes")]
     fn wait(&mut self, context: &mut Context) -> Poll<io::Error> {
         let stall =
-            self.stall.get_or_insert_with(|| Stall { since: Instant::now(), taken: 0, tick: Box::pin(sleep(TICK)) });
+            self.stall.get_or_insert_with(|| Stall { since: Instant::now(), taken: 0, tick: Box::pin(sleep(HURRY)) });
         loop {
             ready!(stall.tick.as_mut().poll(context));
-            let patience = if self.memory.is_tight() { TICK.min(self.patience) } else { self.patience };
-            let allowed = patience + Duration::from_secs_f64(stall.taken as f64 / SLOWEST);
+            let patience = if self.answers.is_tight() { HURRY.min(self.patience) } else { self.patience };
+            let allowed = patience + Duration::from_secs_f64(stall.taken as f64 / SLOWEST as f64);
             if stall.since.elapsed() >= allowed {
                 self.signs.has_stalled.store(true, Ordering::Relaxed);
                 // What the system still holds for this client goes with the connection. An error: there is no connection any more.
@@ -107,7 +101,7 @@ impl PatientStream {
                 return Poll::Ready(io::Error::new(io::ErrorKind::TimedOut, "the client takes nothing"));
             }
             let rest = allowed.saturating_sub(stall.since.elapsed());
-            stall.tick.as_mut().reset(Instant::now() + rest.min(TICK));
+            stall.tick.as_mut().reset(Instant::now() + rest.min(HURRY));
         }
     }
 }

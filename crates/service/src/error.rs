@@ -7,6 +7,7 @@ use reentry::simulate::SimulationError;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use crate::memory::Refusal;
 use crate::wire::reader::Fault;
 
 /// What went wrong with a request.
@@ -55,6 +56,9 @@ pub enum ApiError {
         "the body must be declared as application/json, not as {0}; with curl: -H 'content-type: application/json'"
     )]
     UnsupportedMediaType(String),
+    /// The body is in a coding that is not taken.
+    #[error("the body must be coded by gzip or zstd, or not at all, not by {0}")]
+    UnsupportedCoding(String),
     /// The request is JSON, but not a valid case.
     #[error("the request has {} {}", .0.len(), if .0.len() == 1 { "fault" } else { "faults" })]
     Invalid(Vec<Fault>),
@@ -66,10 +70,16 @@ pub enum ApiError {
         /// The field that asks for them.
         pointer: &'static str,
     },
+    /// An answer that does not fit into the memory for answers.
+    #[error("the answer would take more than the {limit} bytes of memory that one may take; ask for fewer rows")]
+    TooLarge {
+        /// The limit, bytes.
+        limit: usize,
+    },
     /// The flight cannot be finished.
     #[error("the flight cannot be finished: {0}")]
     Flight(#[from] SimulationError),
-    /// The client has sent more requests than it may.
+    /// The client has sent more requests than it may, or holds as much as it may.
     #[error("this client may send no more requests now; try again in {seconds} s")]
     TooManyRequests {
         /// Until the next is answered, s.
@@ -136,7 +146,7 @@ impl ApiError {
     /// The one table: status, type and title.
     fn class(&self) -> (StatusCode, &'static str, &'static str) {
         use SimulationError::{
-            Chatter, Interrupted, NoDirection, NothingLeft, Overflow, Singularity, StepLimit, TooStiff,
+            Chatter, Interrupted, NoDirection, NoRoom, NothingLeft, Overflow, Singularity, StepLimit, TooStiff,
         };
         use StatusCode as Status;
         match self {
@@ -155,8 +165,12 @@ impl ApiError {
             Self::UnsupportedMediaType(_) => {
                 (Status::UNSUPPORTED_MEDIA_TYPE, "/problems/unsupported-media-type", "Unsupported media type")
             }
+            Self::UnsupportedCoding(_) => {
+                (Status::UNSUPPORTED_MEDIA_TYPE, "/problems/unsupported-coding", "Unsupported content coding")
+            }
             Self::Invalid(_) => (Status::UNPROCESSABLE_ENTITY, "/problems/invalid-case", "Not a valid case"),
             Self::TooManyRows { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows"),
+            Self::TooLarge { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/answer-too-large", "Answer too large"),
             Self::Flight(flight) => match flight {
                 StepLimit { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-limit", "Too many steps"),
                 Singularity { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/singularity", "Singular equations"),
@@ -169,6 +183,7 @@ impl ApiError {
                     (Status::UNPROCESSABLE_ENTITY, "/problems/no-direction", "Thrust without a direction")
                 }
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
+                NoRoom { .. } => (Status::SERVICE_UNAVAILABLE, "/problems/busy", "Busy"),
                 Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
             },
             Self::TooManyRequests { .. } => {
@@ -220,6 +235,15 @@ impl ApiError {
     }
 }
 
+impl From<Refusal> for ApiError {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::Full => Self::Busy,
+            Refusal::Share => Self::TooManyRequests { seconds: 1 },
+        }
+    }
+}
+
 /// How a request ended, in a word, for those who count: kept beside the response.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome(pub &'static str);
@@ -238,6 +262,9 @@ impl IntoResponse for ApiError {
         let body = self.problem().to_json();
         let mut response = (status, [(header::CONTENT_TYPE, "application/problem+json")], body).into_response();
         response.extensions_mut().insert(Outcome(self.outcome()));
+        if let Self::UnsupportedCoding(_) = self {
+            response.headers_mut().insert(header::ACCEPT_ENCODING, HeaderValue::from_static("gzip, zstd"));
+        }
         let retry_after = match self {
             Self::Busy => Some(1),
             Self::TooManyRequests { seconds } => Some(seconds),

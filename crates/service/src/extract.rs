@@ -1,44 +1,97 @@
 //! The body of a request: declared as JSON, complete, and not too long.
 
+use std::sync::Arc;
+
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRequest, Request};
-use axum::http::header;
+use axum::http::{HeaderMap, header};
 use http_body_util::BodyExt;
+use reentry::Interrupt;
+use serde_json::Value;
+use tokio::time::{Instant, timeout, timeout_at};
 
+use crate::client::Client;
+use crate::coding::{Coding, InflateError, inflate};
 use crate::error::ApiError;
+use crate::memory::{Budget, HURRY, Permit, SLOWEST};
 use crate::middleware::route;
 use crate::state::AppState;
+use crate::wire::json;
 
-/// The bytes of a body that is declared as JSON.
+/// A body that is declared as JSON, in the coding in which it came.
 #[derive(Debug)]
-pub struct Payload(pub Bytes);
+pub struct Payload {
+    bytes: Bytes,
+    coding: Coding,
+    limit: usize,
+    /// Where the text counts that is made of another coding.
+    permit: Permit,
+}
+
+impl Payload {
+    /// The tree of its JSON.
+    ///
+    /// # Errors
+    /// As [`Payload::text`], and when the text is not JSON.
+    pub fn json(self, interrupt: &dyn Interrupt) -> Result<Value, ApiError> {
+        Ok(json::parse(&self.text(interrupt)?)?)
+    }
+
+    /// The text.
+    ///
+    /// # Errors
+    /// When the body is not what its coding says, or when its text is too long or has no room in memory.
+    pub fn text(self, interrupt: &dyn Interrupt) -> Result<Bytes, ApiError> {
+        let Self { bytes, coding, limit, mut permit } = self;
+        if coding == Coding::Identity {
+            return Ok(bytes);
+        }
+        let text = inflate(coding, &bytes, |length| {
+            if interrupt.is_raised() {
+                Err(ApiError::Interrupted)
+            } else if length > limit {
+                Err(ApiError::PayloadTooLarge { limit })
+            } else {
+                permit.try_hold(length).map_err(ApiError::from)
+            }
+        });
+        match text {
+            Ok(text) => Ok(permit.keep(text)),
+            Err(InflateError::Unreadable(error)) => {
+                Err(ApiError::UnreadableBody(format!("it is not {}: {error}", coding.name())))
+            }
+            Err(InflateError::Refused(error)) => Err(error),
+        }
+    }
+}
 
 impl FromRequest<AppState> for Payload {
     type Rejection = ApiError;
 
     async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
-        read(request, state, state.config.body_limit).await.map(Self)
+        read(request, state, state.config.body_limit, &state.memory.bodies).await
     }
 }
 
-/// The bytes of a batch that is declared as JSON, which may be longer than a single request.
+/// A batch that is declared as JSON, which may be longer than a single request.
 #[derive(Debug)]
-pub struct BatchPayload(pub Bytes);
+pub struct BatchPayload(pub Payload);
 
 impl FromRequest<AppState> for BatchPayload {
     type Rejection = ApiError;
 
     async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
-        read(request, state, state.config.batch_body_limit).await.map(Self)
+        read(request, state, state.config.batch_body_limit, &state.memory.batch_bodies).await.map(Self)
     }
 }
 
-async fn read(request: Request, state: &AppState, limit: usize) -> Result<Bytes, ApiError> {
+async fn read(request: Request, state: &AppState, limit: usize, budget: &Arc<Budget>) -> Result<Payload, ApiError> {
     let declared = request.headers().get(header::CONTENT_TYPE);
     let media_type = declared.map_or(Ok("nothing"), |value| value.to_str()).unwrap_or("an unreadable type");
     if !is_json(media_type) {
         return Err(ApiError::UnsupportedMediaType(media_type.to_owned()));
     }
+    let coding = declared_coding(request.headers())?;
     let declared = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok());
     let too_long = declared.and_then(|length| length.parse().ok()).is_some_and(|length: u64| length > limit as u64);
     if too_long && request.headers().contains_key(header::EXPECT) {
@@ -47,30 +100,55 @@ async fn read(request: Request, state: &AppState, limit: usize) -> Result<Bytes,
     }
     let deadline = state.config.deadline;
     let route = route(&request);
-    let received = collect(request.into_body(), state, limit);
-    let body = tokio::time::timeout(deadline, received).await;
-    let body = body.map_err(|_| ApiError::BodyTimeout { seconds: deadline.as_secs_f64() })??;
-    state.metrics.received(&route, body.len());
-    Ok(body)
+    let client = Client::of(request.extensions());
+    let received = collect(request.into_body(), limit, budget, client);
+    let bytes = timeout(deadline, received).await;
+    let bytes = bytes.map_err(|_| ApiError::BodyTimeout { seconds: deadline.as_secs_f64() })??;
+    state.metrics.received(&route, bytes.len());
+    Ok(Payload { bytes, coding, limit, permit: budget.permit(client) })
 }
 
-/// The bytes of a body, which count as held from the first on.
-async fn collect(mut body: Body, state: &AppState, limit: usize) -> Result<Bytes, ApiError> {
-    let mut share = state.memory.share();
+/// The coding in which a request with these headers has its body.
+fn declared_coding(headers: &HeaderMap) -> Result<Coding, ApiError> {
+    let mut lines = headers.get_all(header::CONTENT_ENCODING).iter();
+    let coding = lines.next().map_or(Ok("identity"), |line| line.to_str()).unwrap_or("an unreadable coding").trim();
+    let known = [Coding::Identity, Coding::Gzip, Coding::Zstd];
+    match known.into_iter().find(|known| known.name().eq_ignore_ascii_case(coding)) {
+        Some(known) if lines.next().is_none() => Ok(known),
+        Some(_) => Err(ApiError::UnsupportedCoding("several codings".to_owned())),
+        None => Err(ApiError::UnsupportedCoding(coding.to_owned())),
+    }
+}
+
+/// The bytes of a body, which count as held from the first on. Where bodies take much memory, one that comes slowly is not waited for.
+async fn collect(mut body: Body, limit: usize, budget: &Arc<Budget>, client: Client) -> Result<Bytes, ApiError> {
+    budget.admit(client)?;
+    let mut permit = budget.permit(client);
     let mut bytes = Vec::new();
-    while let Some(frame) = body.frame().await {
+    let (mut look, mut before) = (Instant::now() + HURRY, 0);
+    loop {
+        let Ok(frame) = timeout_at(look, body.frame()).await else {
+            if budget.is_tight() && bytes.len() - before < SLOWEST {
+                return Err(ApiError::BodyTimeout { seconds: HURRY.as_secs_f64() });
+            }
+            (look, before) = (look + HURRY, bytes.len());
+            continue;
+        };
+        let Some(frame) = frame else { break };
         let frame = frame.map_err(|error| ApiError::UnreadableBody(error.to_string()))?;
         let Ok(data) = frame.into_data() else { continue };
-        if bytes.len() + data.len() > limit {
+        let length = bytes.len() + data.len();
+        if length > limit {
             return Err(ApiError::PayloadTooLarge { limit });
         }
-        if state.memory.is_full() {
-            return Err(ApiError::Busy);
+        if length > bytes.capacity() {
+            let capacity = (2 * bytes.capacity()).clamp(length, limit);
+            permit.try_hold(capacity)?;
+            bytes.reserve_exact(capacity - bytes.len());
         }
-        share.grow(data.len());
         bytes.extend_from_slice(&data);
     }
-    Ok(share.keep(bytes))
+    Ok(permit.keep(bytes))
 }
 
 /// `application/json` or a type built on it, with any parameters.

@@ -1,26 +1,76 @@
-//! The bytes that clients make the service hold: bodies on their way in, answers on their way out; together they are bounded.
+//! The bytes that clients make the service hold, in budgets that do not take from each other: bodies of batches, other bodies, and answers
+//! from the first step of their flight to the last byte that the system has taken to be sent.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use bytes::Bytes;
 
-/// What may be held, and what is.
-#[derive(Debug)]
+use crate::client::Client;
+use crate::config::{BATCH_BODIES, BODIES};
+
+/// How long those who are slow are waited for where a budget is tight.
+pub const HURRY: Duration = Duration::from_secs(1);
+
+/// The slowest that a client may send a body or take an answer, where it is not waited for, bytes a second.
+pub const SLOWEST: usize = 16_384;
+
+/// All budgets.
+#[derive(Clone, Debug)]
 pub struct Memory {
-    limit: usize,
-    held: AtomicUsize,
+    /// Of the bodies of batches, as they arrive: an eighth.
+    pub batch_bodies: Arc<Budget>,
+    /// Of all other bodies, as they arrive: a sixteenth.
+    pub bodies: Arc<Budget>,
+    /// Of answers, as they are computed and sent: the rest.
+    pub answers: Arc<Budget>,
 }
 
 impl Memory {
-    /// So many bytes.
-    pub fn new(limit: usize) -> Self {
-        Self { limit, held: AtomicUsize::new(0) }
+    /// Budgets that have so many bytes in all.
+    pub fn new(bytes: usize) -> Self {
+        let [batch_bodies, bodies] = [bytes / BATCH_BODIES, bytes / BODIES];
+        let budget = |limit| Arc::new(Budget::new(limit));
+        Self {
+            batch_bodies: budget(batch_bodies),
+            bodies: budget(bodies),
+            answers: budget(bytes - batch_bodies - bodies),
+        }
+    }
+}
+
+/// What may be held of a kind, and what is.
+#[derive(Debug)]
+pub struct Budget {
+    limit: usize,
+    held: Mutex<Held>,
+}
+
+#[derive(Debug, Default)]
+struct Held {
+    all: usize,
+    clients: HashMap<Client, usize>,
+}
+
+/// Why no more may be held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The budget is used up.
+    Full,
+    /// The client holds its share of it, which is a half.
+    Share,
+}
+
+impl Budget {
+    fn new(limit: usize) -> Self {
+        Self { limit, held: Mutex::default() }
     }
 
     /// The bytes that are held now.
     pub fn held(&self) -> usize {
-        self.held.load(Ordering::Relaxed)
+        self.lock().all
     }
 
     /// Whether nothing more is to be begun.
@@ -28,57 +78,125 @@ impl Memory {
         self.held() >= self.limit
     }
 
-    /// Whether those who do not take their answers should be waited for no longer: half of it is held.
+    /// Whether those who are slow should be waited for no longer: half of it is held.
     pub fn is_tight(&self) -> bool {
         self.held() >= self.limit / 2
     }
 
-    /// A share of no bytes yet.
-    pub fn share(self: &Arc<Self>) -> Share {
-        Share { memory: Arc::clone(self), bytes: 0 }
+    /// A permit of no bytes yet.
+    pub fn permit(self: &Arc<Self>, client: Client) -> Permit {
+        Permit { budget: Arc::clone(self), client: client.site(), bytes: 0 }
     }
 
-    /// The bytes, which count as held until the last that refers to them is gone: until the system has taken them to be sent.
-    pub fn hold(self: &Arc<Self>, mut bytes: Vec<u8>) -> Bytes {
-        bytes.shrink_to_fit();
-        let mut share = self.share();
-        share.grow(bytes.len());
-        share.keep(bytes)
+    /// Whether a client may begin to hold something.
+    ///
+    /// # Errors
+    /// When the budget is used up, or the client's share is.
+    pub fn admit(&self, client: Client) -> Result<(), Refusal> {
+        let held = self.lock();
+        if held.all >= self.limit {
+            Err(Refusal::Full)
+        } else if held.of(client.site()) >= self.limit / 2 {
+            Err(Refusal::Share)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Held> {
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Held {
+    fn of(&self, client: Client) -> usize {
+        self.clients.get(&client).copied().unwrap_or(0)
+    }
+
+    fn change(&mut self, client: Client, from: usize, to: usize) {
+        self.all = self.all - from + to;
+        match self.clients.entry(client) {
+            Entry::Occupied(mut of_client) => {
+                *of_client.get_mut() = *of_client.get() - from + to;
+                if *of_client.get() == 0 {
+                    of_client.remove();
+                }
+            }
+            Entry::Vacant(of_client) if to > 0 => {
+                of_client.insert(to);
+            }
+            Entry::Vacant(_) => {}
+        }
     }
 }
 
 /// Bytes that are held, until dropped.
 #[derive(Debug)]
-pub struct Share {
-    memory: Arc<Memory>,
+pub struct Permit {
+    budget: Arc<Budget>,
+    client: Client,
     bytes: usize,
 }
 
-impl Share {
-    /// Holds so many more.
-    pub fn grow(&mut self, bytes: usize) {
-        self.bytes += bytes;
-        self.memory.held.fetch_add(bytes, Ordering::Relaxed);
+impl Permit {
+    /// Holds so many in all, if there is room for that.
+    ///
+    /// # Errors
+    /// When there is none: up to the limit, and up to the client's share of it, beyond which it may hold one thing alone. What was held
+    /// before is held on.
+    pub fn try_hold(&mut self, bytes: usize) -> Result<(), Refusal> {
+        self.hold_within(self.budget.limit, bytes)
     }
 
-    /// The bytes of which this is the share.
-    pub fn keep(self, bytes: Vec<u8>) -> Bytes {
-        Bytes::from_owner(Held { bytes, _share: self })
+    /// Holds so many in all, if that leaves the part of the budget that is for the many that are small.
+    ///
+    /// # Errors
+    /// As [`Permit::try_hold`].
+    pub fn try_reserve(&mut self, bytes: usize) -> Result<(), Refusal> {
+        self.hold_within(self.largest(), bytes)
+    }
+
+    /// The most that [`Permit::try_reserve`] may ever hold.
+    pub fn largest(&self) -> usize {
+        self.budget.limit / 16 * 15
+    }
+
+    fn hold_within(&mut self, limit: usize, bytes: usize) -> Result<(), Refusal> {
+        let mut held = self.budget.lock();
+        if bytes > self.bytes {
+            let of_client = held.of(self.client) - self.bytes;
+            if held.all - self.bytes + bytes > limit {
+                return Err(Refusal::Full);
+            }
+            if of_client > 0 && of_client + bytes > self.budget.limit / 2 {
+                return Err(Refusal::Share);
+            }
+        }
+        held.change(self.client, self.bytes, bytes);
+        self.bytes = bytes;
+        Ok(())
+    }
+
+    /// The bytes, which count as held until the last that refers to them is gone.
+    pub fn keep(mut self, bytes: Vec<u8>) -> Bytes {
+        self.budget.lock().change(self.client, self.bytes, bytes.capacity());
+        self.bytes = bytes.capacity();
+        Bytes::from_owner(Kept { bytes, _permit: self })
     }
 }
 
-impl Drop for Share {
+impl Drop for Permit {
     fn drop(&mut self) {
-        self.memory.held.fetch_sub(self.bytes, Ordering::Relaxed);
+        self.budget.lock().change(self.client, self.bytes, 0);
     }
 }
 
-struct Held {
+struct Kept {
     bytes: Vec<u8>,
-    _share: Share,
+    _permit: Permit,
 }
 
-impl AsRef<[u8]> for Held {
+impl AsRef<[u8]> for Kept {
     fn as_ref(&self) -> &[u8] {
         &self.bytes
     }

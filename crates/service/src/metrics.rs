@@ -46,6 +46,12 @@ struct Cancelled {
     cause: &'static str,
 }
 
+/// What is held in memory.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Kind {
+    kind: &'static str,
+}
+
 /// What a flight cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
@@ -62,8 +68,8 @@ pub struct Work {
 /// What is measured when it is asked for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Now {
-    /// Bytes of bodies and answers that are held.
-    pub held: usize,
+    /// Bytes that are held, of each kind.
+    pub held: [(&'static str, usize); 3],
     /// Lines of the log that nobody took in time.
     pub lost_lines: usize,
     /// Clients that the rate limit remembers.
@@ -81,6 +87,7 @@ pub struct Metrics {
     sent: Family<Route, Counter>,
     queued: Gauge,
     running: Gauge,
+    suspended: Gauge,
     waits: Times<Route>,
     compute: Times<Route>,
     cancelled: Family<Cancelled, Counter>,
@@ -91,7 +98,7 @@ pub struct Metrics {
     rows: Family<Route, Counter>,
     connections: Gauge,
     stalled: Counter,
-    held: Gauge,
+    held: Family<Kind, Gauge>,
     clients: Gauge,
     lost_lines: Counter,
     resident: Gauge,
@@ -128,6 +135,7 @@ impl Metrics {
             sent: Family::default(),
             queued: Gauge::default(),
             running: Gauge::default(),
+            suspended: Gauge::default(),
             waits: times(),
             compute: times(),
             cancelled: Family::default(),
@@ -138,7 +146,7 @@ impl Metrics {
             rows: Family::default(),
             connections: Gauge::default(),
             stalled: Counter::default(),
-            held: Gauge::default(),
+            held: Family::default(),
             clients: Gauge::default(),
             lost_lines: Counter::default(),
             resident: Gauge::default(),
@@ -157,8 +165,10 @@ impl Metrics {
         r.register_with_unit("response", "Bodies sent", Unit::Bytes, self.sent.clone());
         r.register("jobs_queued", "Jobs that wait for a worker", self.queued.clone());
         r.register("jobs_running", "Jobs that a worker has", self.running.clone());
+        let help = "Jobs that have given way to others, or wait for memory";
+        r.register("jobs_suspended", help, self.suspended.clone());
         r.register_with_unit("queue_wait", "What jobs waited for a worker", Unit::Seconds, self.waits.clone());
-        r.register_with_unit("compute", "What jobs took of a worker", Unit::Seconds, self.compute.clone());
+        r.register_with_unit("compute", "What jobs computed", Unit::Seconds, self.compute.clone());
         r.register("cancellations", "Jobs that nobody waited for any more, or not in time", self.cancelled.clone());
         r.register("batch_cases", "Cases of batches", self.cases.clone());
         r.register("integration_steps", "Accepted steps of finished flights", self.steps.clone());
@@ -178,7 +188,9 @@ impl Metrics {
     /// # Errors
     /// Never: a text can always be written.
     pub fn text(&self, now: Now) -> Result<String, fmt::Error> {
-        self.held.set(signed(now.held));
+        for (kind, held) in now.held {
+            self.held.get_or_create(&Kind { kind }).set(signed(held));
+        }
         self.clients.set(signed(now.clients));
         self.lost_lines.inc_by((now.lost_lines as u64).saturating_sub(self.lost_lines.get()));
         self.resident.set(resident().unwrap_or_default());
@@ -219,10 +231,27 @@ impl Metrics {
         self.waits.get_or_create(&Route { route: route.to_owned() }).observe(waited.as_secs_f64());
     }
 
-    /// A worker has ended a job.
-    pub fn job_over(&self, route: &'static str, took: Duration) {
+    /// A job waits no more and was never begun.
+    pub fn job_left_queue(&self) {
+        self.queued.dec();
+    }
+
+    /// A job has given way to others.
+    pub fn job_suspended(&self) {
         self.running.dec();
-        self.compute.get_or_create(&Route { route: route.to_owned() }).observe(took.as_secs_f64());
+        self.suspended.inc();
+    }
+
+    /// A job goes on that gave way.
+    pub fn job_resumed(&self) {
+        self.suspended.dec();
+        self.running.inc();
+    }
+
+    /// A worker has ended a job that computed for so long.
+    pub fn job_over(&self, route: &'static str, computed: Duration) {
+        self.running.dec();
+        self.compute.get_or_create(&Route { route: route.to_owned() }).observe(computed.as_secs_f64());
     }
 
     /// A job was cancelled, waiting or running.

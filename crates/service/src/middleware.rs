@@ -14,9 +14,8 @@ use hyper::body::{Frame, SizeHint};
 use tracing::Instrument;
 use uuid::Uuid;
 
-use crate::client::client;
+use crate::client::{Client, client};
 use crate::error::Outcome;
-use crate::rate::Left;
 use crate::state::AppState;
 
 /// The header that names a request, in the request and in its answer.
@@ -32,13 +31,14 @@ pub fn route(request: &Request) -> String {
 /// Gives every answer an `x-request-id`, and every request one line in the log and its place in the metrics.
 ///
 /// Neither has anything of the request but its method, its path without the query, its identifier and the client's address.
-pub async fn observe(State(app): State<AppState>, request: Request, next: Next) -> Response {
+pub async fn observe(State(app): State<AppState>, mut request: Request, next: Next) -> Response {
     let id = request.headers().get(REQUEST_ID).filter(|id| is_sound(id)).cloned().unwrap_or_else(new_id);
     let client = client(request.extensions(), request.headers(), &app.config);
+    request.extensions_mut().insert(client);
     let span = tracing::info_span!(
         "request",
         id = id.to_str().unwrap_or_default(),
-        client = client.map(tracing::field::display),
+        client = client.address().map(tracing::field::display),
         method = %request.method(),
         path = request.uri().path(),
     );
@@ -158,12 +158,13 @@ pub async fn limit(State(app): State<AppState>, request: Request, next: Next) ->
     if FREE.contains(&request.uri().path()) {
         return next.run(request).await;
     }
-    let Some(client) = client(request.extensions(), request.headers(), &app.config) else {
+    let client = Client::of(request.extensions());
+    if client.address().is_none() {
         return next.run(request).await;
-    };
+    }
     let (left, mut response) = match limit.take(client) {
         Ok(left) => (left, next.run(request).await),
-        Err(refusal) => (Left::default(), refusal.into_response()),
+        Err((left, refusal)) => (left, refusal.into_response()),
     };
     limit.tell(left, response.headers_mut());
     response

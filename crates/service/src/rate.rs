@@ -1,13 +1,16 @@
-//! The rate limit: how many requests a client may send.
+//! The rate limit: how many requests a client may send, and how much it may have computed.
+//!
+//! Each client has an allowance that comes back with time (the generic cell rate algorithm, which keeps of a client the instant at which
+//! all of it is back). What a request costs to compute is known when it is over, and may be more than the client has left: it is then in
+//! debt, which no crate for rate limits knows.
 
-use std::net::{IpAddr, Ipv6Addr};
-use std::time::Duration;
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use axum::http::{HeaderMap, HeaderName, HeaderValue};
-use governor::clock::{Clock, DefaultClock};
-use governor::middleware::StateInformationMiddleware;
-use governor::{DefaultKeyedRateLimiter, Quota};
 
+use crate::client::Client;
 use crate::config::Config;
 use crate::error::ApiError;
 
@@ -20,47 +23,93 @@ pub const LEFT: HeaderName = HeaderName::from_static("ratelimit");
 /// How often clients are forgotten that could send all at once again.
 pub const FORGETTING: Duration = Duration::from_secs(10);
 
+/// The computing that costs as much as a request, s.
+const COMPUTING: f64 = 0.01;
+
+/// How many times the allowance of a client its site has, which has many where its addresses are of IPv6.
+const SITE: f64 = 8.0;
+
 /// What each client has left.
 #[derive(Debug)]
 pub struct RateLimit {
-    clients: DefaultKeyedRateLimiter<IpAddr, StateInformationMiddleware>,
-    clock: DefaultClock,
+    start: Instant,
     burst: u32,
-    /// Between two requests on average, s.
+    /// In which one request comes back, s.
     period: f64,
+    networks: Allowances,
+    sites: Allowances,
+}
+
+/// When each client has all back, s since the start.
+type Allowances = Mutex<HashMap<Client, f64>>;
+
+/// What a client has left.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Left {
+    requests: u32,
+    /// Until it has all back, s.
+    reset: f64,
 }
 
 impl RateLimit {
     /// The limit of the settings, if they have one.
     pub fn of(config: &Config) -> Option<Self> {
         let period = config.rate_limit?.recip();
-        let quota = Quota::with_period(Duration::from_secs_f64(period))?.allow_burst(config.rate_burst);
-        let clients = DefaultKeyedRateLimiter::keyed(quota).with_middleware();
-        Some(Self { clients, clock: DefaultClock::default(), burst: config.rate_burst.get(), period })
+        let burst = config.rate_burst.get();
+        Some(Self { start: Instant::now(), burst, period, networks: Mutex::default(), sites: Mutex::default() })
     }
 
     /// Takes one from what the client has left.
     ///
     /// # Errors
-    /// [`ApiError::TooManyRequests`] where nothing is left.
-    pub fn take(&self, client: IpAddr) -> Result<Left, ApiError> {
-        match self.clients.check_key(&who(client)) {
-            Ok(state) => Ok(Left { requests: state.remaining_burst_capacity() }),
-            Err(refusal) => {
-                let seconds = refusal.wait_time_from(self.clock.now()).as_secs_f64();
-                Err(ApiError::TooManyRequests { seconds: whole_seconds(seconds).max(1) })
-            }
+    /// What is left where that is not enough, with the seconds until it is.
+    pub fn take(&self, client: Client) -> Result<Left, (Left, ApiError)> {
+        let now = self.now();
+        let (mut networks, mut sites) = (lock(&self.networks), lock(&self.sites));
+        let network = networks.entry(client.network()).or_insert(now);
+        let site = sites.entry(client.site()).or_insert(now);
+        let most = f64::from(self.burst) * self.period;
+        let after = network.max(now) + self.period;
+        let site_after = site.max(now) + self.period / SITE;
+        let wait = (after - now - most).max(site_after - now - most);
+        // A rounding is no wait.
+        if wait > 1e-9 * most {
+            let error = ApiError::TooManyRequests { seconds: whole(wait).max(1) };
+            return Err((self.left(*network - now), error));
         }
+        (*network, *site) = (after, site_after);
+        Ok(self.left(after - now))
+    }
+
+    /// Takes what so much computing costs, into debt where that is not left.
+    pub fn charge(&self, client: Client, computed: Duration) {
+        let now = self.now();
+        let price = computed.as_secs_f64() / COMPUTING * self.period;
+        for (allowances, client, price) in
+            [(&self.networks, client.network(), price), (&self.sites, client.site(), price / SITE)]
+        {
+            let mut allowances = lock(allowances);
+            let all_back = allowances.entry(client).or_insert(now);
+            *all_back = all_back.max(now) + price;
+        }
+    }
+
+    /// What is left where all is back after so many seconds.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the burst, by the maximum")]
+    fn left(&self, reset: f64) -> Left {
+        // What is missing of a whole request is a rounding where it is this small.
+        let requests = f64::from(self.burst) - reset / self.period + 1e-6;
+        Left { requests: requests.max(0.0) as u32, reset: reset.max(0.0) }
     }
 
     /// Says what is left, as the draft `draft-ietf-httpapi-ratelimit-headers` (10) has it.
     pub fn tell(&self, left: Left, headers: &mut HeaderMap) {
         let Self { burst, period, .. } = self;
-        let window = whole_seconds(f64::from(*burst) * period).max(1);
-        let reset = whole_seconds(f64::from(burst - left.requests) * period);
+        let window = whole(f64::from(*burst) * period).max(1);
+        let Left { requests, reset } = left;
         for (name, text) in [
             (POLICY, format!("\"client\";q={burst};w={window}")),
-            (LEFT, format!("\"client\";r={};t={reset}", left.requests)),
+            (LEFT, format!("\"client\";r={requests};t={}", whole(reset))),
         ] {
             if let Ok(value) = HeaderValue::from_str(&text) {
                 headers.insert(name, value);
@@ -70,28 +119,26 @@ impl RateLimit {
 
     /// Forgets the clients that could send all at once again.
     pub fn forget(&self) {
-        self.clients.retain_recent();
-        self.clients.shrink_to_fit();
+        let now = self.now();
+        for allowances in [&self.networks, &self.sites] {
+            let mut allowances = lock(allowances);
+            allowances.retain(|_, all_back| *all_back > now);
+            allowances.shrink_to_fit();
+        }
     }
 
     /// The clients that are remembered.
     pub fn clients(&self) -> usize {
-        self.clients.len()
+        lock(&self.networks).len()
+    }
+
+    fn now(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
     }
 }
 
-/// Requests that a client may still send at once.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Left {
-    requests: u32,
-}
-
-/// The network of an address of IPv6, of which a client has as many as it likes; an address of IPv4 is one client.
-fn who(client: IpAddr) -> IpAddr {
-    match client {
-        IpAddr::V4(_) => client,
-        IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() & (u128::MAX << 64)).into(),
-    }
+fn lock(allowances: &Allowances) -> MutexGuard<'_, HashMap<Client, f64>> {
+    allowances.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[expect(
@@ -99,6 +146,6 @@ fn who(client: IpAddr) -> IpAddr {
     clippy::cast_sign_loss,
     reason = "a positive number of seconds, far below 2^64"
 )]
-fn whole_seconds(seconds: f64) -> u64 {
+fn whole(seconds: f64) -> u64 {
     seconds.ceil() as u64
 }

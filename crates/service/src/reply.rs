@@ -3,11 +3,15 @@
 use std::sync::atomic::AtomicBool;
 
 use axum::body::{Body, Bytes};
+use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
+use reentry::Interrupt;
 
 use crate::answer::Answer;
+use crate::client::Client;
 use crate::coding::{Coding, Encoder};
+use crate::compute::Task;
 use crate::error::ApiError;
 use crate::state::AppState;
 
@@ -26,23 +30,22 @@ pub fn coding(request: &HeaderMap) -> Coding {
 pub async fn reply<F>(
     app: &AppState,
     route: &'static str,
-    request: &HeaderMap,
+    request: &Parts,
     media_type: &'static str,
     job: F,
 ) -> Result<Response, ApiError>
 where
-    F: FnOnce(&AtomicBool) -> Result<Answer, ApiError> + Send + 'static,
+    F: FnOnce(&Task) -> Result<Answer, ApiError> + Send + 'static,
 {
-    let coding = coding(request);
+    let coding = coding(&request.headers);
     let state = app.clone();
-    let run = move |interrupt: &AtomicBool| {
-        let Answer { body, work } = job(interrupt)?;
+    let run = move |task: &Task| {
+        let Answer { body, work } = job(task)?;
         state.metrics.flown(route, work);
         let coding = if body.len() as u64 >= state.config.compress_above { coding } else { Coding::Identity };
-        let body = coded(body, coding, interrupt)?;
-        Ok((coding, state.memory.hold(body)))
+        Ok((coding, task.keep(coded(body, coding, task)?)))
     };
-    let (coding, body) = app.compute.run(route, run).await?;
+    let (coding, body) = app.compute.run(route, Client::of(&request.extensions), run).await?;
     Ok(response(media_type, coding, body))
 }
 
@@ -55,7 +58,7 @@ pub fn response(media_type: &'static str, coding: Coding, body: impl Into<Body>)
     }
 }
 
-fn coded(body: Vec<u8>, coding: Coding, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+fn coded(body: Vec<u8>, coding: Coding, interrupt: &dyn Interrupt) -> Result<Vec<u8>, ApiError> {
     if coding == Coding::Identity {
         return Ok(body);
     }
@@ -87,20 +90,28 @@ impl Lines {
     ///
     /// # Errors
     /// As [`Compute::share`](crate::compute::Compute::share).
-    pub async fn next(self, app: &AppState, route: &'static str, line: Bytes) -> Result<(Self, Bytes), ApiError> {
+    pub async fn next(
+        self,
+        app: &AppState,
+        route: &'static str,
+        client: Client,
+        line: Bytes,
+    ) -> Result<(Self, Bytes), ApiError> {
         if matches!(self.encoder, Encoder::Identity(_)) {
             return Ok((self, line));
         }
-        let (lines, coded) = if line.len() <= SHORT {
-            self.write(&line, &AtomicBool::new(false))?
-        } else {
-            let deadline = app.config.deadline;
-            app.compute.share(route, move |interrupt| self.write(&line, interrupt), deadline).await?
+        if line.len() <= SHORT {
+            let (lines, coded) = self.write(&line, &AtomicBool::new(false))?;
+            return Ok((lines, app.memory.answers.permit(client).keep(coded)));
+        }
+        let code = move |task: &Task| {
+            let (lines, coded) = self.write(&line, task)?;
+            Ok((lines, task.keep(coded)))
         };
-        Ok((lines, app.memory.hold(coded)))
+        app.compute.share(route, client, code, app.config.deadline).await
     }
 
-    fn write(mut self, line: &[u8], interrupt: &AtomicBool) -> Result<(Self, Vec<u8>), ApiError> {
+    fn write(mut self, line: &[u8], interrupt: &dyn Interrupt) -> Result<(Self, Vec<u8>), ApiError> {
         self.encoder.write(line, interrupt).map_err(|_| ApiError::Interrupted)?;
         let coded = self.encoder.take().map_err(|_| ApiError::Internal)?;
         Ok((self, coded))

@@ -2,7 +2,8 @@
 
 use axum::body::Bytes;
 use axum::extract::{OriginalUri, State};
-use axum::http::{HeaderMap, Method, header};
+use axum::http::request::Parts;
+use axum::http::{Method, header};
 use axum::routing::get;
 use axum::{Router, middleware};
 use serde_json::Value;
@@ -45,7 +46,7 @@ pub fn app(state: AppState) -> Router {
     let has_metrics = state.config.metrics_listen.is_none();
     let (api, _) = if has_metrics { with_metrics(routes()) } else { routes() }.split_for_parts();
     let text = Bytes::from(document().to_string());
-    let document = async |State(app): State<AppState>, request: HeaderMap| docs::document(&app, &request, text).await;
+    let document = async |State(app): State<AppState>, request: Parts| docs::document(&app, &request, text).await;
     let all = api
         .route("/openapi.json", get(document))
         .route("/docs", get(docs::redirect))
@@ -71,7 +72,7 @@ pub fn surrounded(routes: Router<AppState>, state: AppState) -> Router {
     let cors = CorsLayer::new()
         .allow_origin(origins)
         .allow_methods([Method::GET, Method::POST])
-        .allow_headers([header::CONTENT_TYPE, header::ACCEPT, REQUEST_ID])
+        .allow_headers([header::CONTENT_TYPE, header::CONTENT_ENCODING, header::ACCEPT, REQUEST_ID])
         .expose_headers([REQUEST_ID, header::RETRY_AFTER, rate::POLICY, rate::LEFT]);
     routes
         .fallback(|OriginalUri(uri): OriginalUri| async move { ApiError::NotFound(uri.path().to_owned()) })

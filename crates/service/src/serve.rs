@@ -177,7 +177,7 @@ async fn converse(
 ) {
     // An error: the connection has ended already.
     let _ = stream.set_nodelay(true);
-    let stream = PatientStream::new(stream, state.config.idle, Arc::clone(&state.memory));
+    let stream = PatientStream::new(stream, state.config.idle, Arc::clone(&state.memory.answers));
     let signs = stream.signs();
     let answer = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(Peer(peer));

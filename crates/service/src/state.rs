@@ -18,7 +18,7 @@ pub struct AppState {
     /// The pool of workers.
     pub compute: Arc<Compute>,
     /// The bytes of bodies and answers.
-    pub memory: Arc<Memory>,
+    pub memory: Memory,
     /// What is counted.
     pub metrics: Arc<Metrics>,
     /// The rate limit, if there is one.
@@ -33,14 +33,15 @@ impl AppState {
     /// # Errors
     /// When the system gives no thread for the workers.
     pub fn new(config: Config, lost_lines: LostLines) -> std::io::Result<Self> {
-        let memory = Arc::new(Memory::new(config.memory));
+        let memory = Memory::new(config.memory);
         let metrics = Arc::new(Metrics::new(config.workers()));
-        let compute = Compute::new(&config, Arc::clone(&memory), Arc::clone(&metrics))?;
+        let rate_limit = RateLimit::of(&config).map(Arc::new);
+        let compute = Compute::new(&config, memory.clone(), Arc::clone(&metrics), rate_limit.clone())?;
         Ok(Self {
             compute: Arc::new(compute),
             memory,
             metrics,
-            rate_limit: RateLimit::of(&config).map(Arc::new),
+            rate_limit,
             lost_lines,
             draining: Arc::default(),
             config: Arc::new(config),
@@ -60,7 +61,11 @@ impl AppState {
     /// What is measured when the metrics are asked for.
     pub fn now(&self) -> Now {
         Now {
-            held: self.memory.held(),
+            held: [
+                ("batch_bodies", self.memory.batch_bodies.held()),
+                ("bodies", self.memory.bodies.held()),
+                ("answers", self.memory.answers.held()),
+            ],
             clients: self.rate_limit.as_ref().map_or(0, |limit| limit.clients()),
             lost_lines: self.lost_lines.count(),
         }

@@ -14,6 +14,7 @@ mod thesis;
 use std::borrow::Borrow;
 use std::sync::atomic::AtomicBool;
 
+use reentry::Interrupt;
 use reentry::simulate::SimulationError;
 use serde::Serialize;
 use serde_json::Value;
@@ -106,7 +107,7 @@ impl Validation {
     ///
     /// # Errors
     /// When interrupted.
-    pub fn run(interrupt: &AtomicBool) -> Result<Self, ApiError> {
+    pub fn run(interrupt: &dyn Interrupt) -> Result<Self, ApiError> {
         let program = Program { interrupt };
         let cases = cases::thesis_cases();
         let groups = [
@@ -225,7 +226,7 @@ fn nearest<C: Borrow<Check>>(checks: impl IntoIterator<Item = C>) -> Option<C> {
 /// The program as its users see it: a request in JSON goes in, its answer in JSON comes out.
 #[derive(Clone, Copy, Debug)]
 struct Program<'a> {
-    interrupt: &'a AtomicBool,
+    interrupt: &'a dyn Interrupt,
 }
 
 impl Program<'_> {

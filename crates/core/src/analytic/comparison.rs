@@ -1,8 +1,7 @@
 //! A theory along a whole flight: its predictions, and the stretch over which it holds.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::{End, Prediction, Theory};
+use crate::interrupt::Interrupt;
 use crate::root;
 use crate::simulate::SimulationError;
 use crate::trajectory::{FlightPoint, Sampling, Trajectory};
@@ -44,7 +43,7 @@ impl Theory {
         &self,
         flight: &Trajectory,
         points: &[FlightPoint],
-        interrupt: &AtomicBool,
+        interrupt: &dyn Interrupt,
     ) -> Result<Comparison, SimulationError> {
         let (validity, until) = self.validity(flight, interrupt)?;
         let predictions = points.iter().map(|point| match self.prediction(point) {
@@ -55,14 +54,14 @@ impl Theory {
     }
 
     /// Where the theory holds, and until when, s; it is looked at within the steps of the flight, whatever rows are wanted.
-    fn validity(&self, flight: &Trajectory, interrupt: &AtomicBool) -> Result<(Validity, f64), SimulationError> {
+    fn validity(&self, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(Validity, f64), SimulationError> {
         let over = End::Flight(flight.termination());
         let (mut from, mut to, mut first_reason) = (None, None, None);
         let (mut before, mut holds) = (0.0, false);
         let instants = flight.instants(&Sampling::PerStep(LOOKS_A_STEP), usize::MAX).unwrap_or_default();
         // A flight may have so many steps that its points together would fill the memory.
         'flight: for instants in instants.chunks(LOOKS_AT_ONCE) {
-            if interrupt.load(Ordering::Relaxed) {
+            if interrupt.is_raised() {
                 return Err(SimulationError::Interrupted { time: before });
             }
             for point in flight.points(instants) {

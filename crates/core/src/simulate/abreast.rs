@@ -1,11 +1,11 @@
 //! Many flights at once, in the lanes of one computation.
 
 use std::array::from_fn;
-use std::sync::atomic::AtomicBool;
 
 use super::flight::Flight;
 use super::{SimulationError, arrival};
 use crate::integrate::{System, try_abreast};
+use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
 use crate::scalar::Lanes;
 use crate::scenario::{Case, Equations, Scenario};
@@ -19,7 +19,7 @@ type End = Result<Arrival, SimulationError>;
 /// Every flight has steps of its own, and its lane takes the next one when it has ended. Neighbours share the lanes
 /// if their models and their formulations are the same. Where the formulas of models change on the way, a flight is flown alone,
 /// since every lane would need its own; so are heated flights, and those on which something is watched.
-pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &AtomicBool) -> Vec<End> {
+pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<End> {
     let shared = |scenario: &Scenario| {
         let case = scenario.case();
         (case.models(), case.solver.equations, case.is_watched())
@@ -48,7 +48,7 @@ struct Lane<'a, F> {
 /// Flies scenarios of the same models in a formulation, of which each has one `alone` and all lanes have one `abreast`.
 fn fly_abreast<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
     scenarios: &'a [Scenario],
-    interrupt: &'a AtomicBool,
+    interrupt: &'a dyn Interrupt,
     alone: impl Fn(Forces) -> F,
     abreast: impl Fn(Forces<Lanes<L>>) -> M,
 ) -> Vec<End> {

@@ -1,7 +1,6 @@
 //! A flight on its way: what its steps mean.
 
 use std::array::from_fn;
-use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 
@@ -13,6 +12,7 @@ use super::watch::{Exit, Watch, next_corner};
 use crate::coordinates::PlanetFixed;
 use crate::event::{Effect, Engine};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
+use crate::interrupt::Interrupt;
 use crate::motion::{self, Chatter, Formulation, Moment, Singularity, heat_load};
 use crate::propulsion::{Axis, Impulse};
 use crate::scenario::{Phase, Scenario};
@@ -56,7 +56,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     pub(super) fn start(
         scenario: &'a Scenario,
         mut motion: F,
-        interrupt: &'a AtomicBool,
+        interrupt: &'a dyn Interrupt,
     ) -> Result<Self, SimulationError> {
         let case = scenario.case();
         let limits =

@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use reentry::Interrupt;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
@@ -81,9 +82,9 @@ impl States {
 }
 
 /// A function of [`crate::answer`].
-pub trait Answer: Fn(Value, Format, usize, &AtomicBool) -> Result<answer::Answer, ApiError> + Sync {}
+pub trait Answer: Fn(Value, Format, usize, &dyn Interrupt) -> Result<answer::Answer, ApiError> + Sync {}
 
-impl<F: Fn(Value, Format, usize, &AtomicBool) -> Result<answer::Answer, ApiError> + Sync> Answer for F {}
+impl<F: Fn(Value, Format, usize, &dyn Interrupt) -> Result<answer::Answer, ApiError> + Sync> Answer for F {}
 
 struct Run<A> {
     place: String,
@@ -155,7 +156,7 @@ impl<A: Answer> Run<A> {
         ending
     }
 
-    fn answer(&self, tree: Value, interrupt: &AtomicBool) -> Result<Vec<u8>, ApiError> {
+    fn answer(&self, tree: Value, interrupt: &dyn Interrupt) -> Result<Vec<u8>, ApiError> {
         (self.answer)(tree, self.format, self.row_limit, interrupt).map(|answer| answer.body)
     }
 

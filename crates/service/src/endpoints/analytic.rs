@@ -1,19 +1,17 @@
 //! `POST /analytic`: sets a theory beside a flight.
 
-use std::sync::atomic::AtomicBool;
-
 use axum::extract::State;
 use axum::http::request::Parts;
 use axum::response::Response;
 
 use crate::answer;
+use crate::compute::Task;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
 use crate::reply::reply;
 use crate::state::AppState;
 use crate::wire::analytic::{AnalyticRequest, AnalyticResponse};
-use crate::wire::json;
 
 /// Sets a closed-form theory of entry beside the simulated flight.
 ///
@@ -34,9 +32,9 @@ use crate::wire::json;
         )),
     ),
 )]
-pub async fn analytic(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
+pub async fn analytic(State(app): State<AppState>, parts: Parts, body: Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &Format::OF_THEORIES)?;
     let row_limit = app.config.row_limit;
-    let run = move |interrupt: &AtomicBool| answer::analytic(json::parse(&body)?, format, row_limit, interrupt);
-    reply(&app, "/analytic", &parts.headers, format.media_type(), run).await
+    let run = move |task: &Task| answer::analytic(body.json(task)?, format, row_limit, task);
+    reply(&app, "/analytic", &parts, format.media_type(), run).await
 }

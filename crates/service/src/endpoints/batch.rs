@@ -1,7 +1,6 @@
 //! `POST /simulate/batch`: flies many cases, and gives each answer as soon as it is there.
 
 use std::io;
-use std::sync::atomic::AtomicBool;
 
 use axum::body::{Body, Bytes};
 use axum::extract::State;
@@ -12,6 +11,8 @@ use tokio::sync::mpsc;
 use tokio::time::Instant;
 
 use crate::answer::{self, Answer};
+use crate::client::Client;
+use crate::compute::Task;
 use crate::error::ApiError;
 use crate::extract::BatchPayload;
 use crate::format::Format;
@@ -43,33 +44,34 @@ pub async fn simulate_batch(
 ) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Ndjson])?;
     let coding = reply::coding(&parts.headers);
-    let cases = app.compute.run(ROUTE, move |_| cases(&body)).await?;
+    let client = Client::of(&parts.extensions);
+    let cases = app.compute.run(ROUTE, client, move |task| cases(&body.text(task)?)).await?;
     let fly = |case: Bytes| {
         let app = app.clone();
-        move |interrupt: &AtomicBool| fly(&app, &case, interrupt)
+        move |task: &Task| fly(&app, &case, task)
     };
     let jobs: Vec<_> = cases.into_iter().map(fly).collect();
     let left = jobs.len() - 1;
     let time = app.config.batch_deadline;
     let start = Instant::now();
-    let mut results = app.compute.run_batch(ROUTE, jobs, time)?;
+    let mut results = app.compute.run_batch(ROUTE, client, jobs, time)?;
     // The status goes before the first line: until there is one, a batch runs out of time like any other request.
     let first = results.recv().await.ok_or(ApiError::Internal)?;
     if matches!(first, Err(ApiError::DeadlineExceeded { .. })) && start.elapsed() >= time {
         return first.map(IntoResponse::into_response);
     }
     let lines = Lines::new(coding)?;
-    let batch = Batch { app, results, first: Some(first), left };
+    let batch = Batch { app, client, results, first: Some(first), left };
     Ok(reply::response(format.media_type(), coding, Body::from_stream(batch.coded(lines))))
 }
 
 const ROUTE: &str = "/simulate/batch";
 
-fn fly(app: &AppState, case: &[u8], interrupt: &AtomicBool) -> Result<Bytes, ApiError> {
+fn fly(app: &AppState, case: &[u8], task: &Task) -> Result<Bytes, ApiError> {
     let tree = json::parse(case).map_err(ApiError::CaseNotJson)?;
-    let Answer { body, work } = answer::simulate(tree, Format::Json, app.config.row_limit, interrupt)?;
+    let Answer { body, work } = answer::simulate(tree, Format::Json, app.config.row_limit, task)?;
     app.metrics.flown(ROUTE, work);
-    Ok(app.memory.hold(with_line_end(body)))
+    Ok(task.keep(with_line_end(body)))
 }
 
 fn with_line_end(mut line: Vec<u8>) -> Vec<u8> {
@@ -80,6 +82,7 @@ fn with_line_end(mut line: Vec<u8>) -> Vec<u8> {
 /// A batch whose answer is being sent.
 struct Batch {
     app: AppState,
+    client: Client,
     results: mpsc::Receiver<Result<Bytes, ApiError>>,
     /// The first result, until it has been taken.
     first: Option<Result<Bytes, ApiError>>,
@@ -109,7 +112,8 @@ impl Batch {
             let Some((mut batch, lines)) = state else { return Ok(None) };
             match batch.next().await? {
                 Some(line) => {
-                    let (lines, line) = lines.next(&batch.app, ROUTE, line).await.map_err(io::Error::other)?;
+                    let (lines, line) =
+                        lines.next(&batch.app, ROUTE, batch.client, line).await.map_err(io::Error::other)?;
                     Ok(Some((line, Some((batch, lines)))))
                 }
                 None => Ok(Some((lines.end().map_err(io::Error::other)?, None))),

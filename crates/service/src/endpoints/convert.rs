@@ -1,19 +1,17 @@
 //! `POST /convert`: a state in every coordinate system.
 
-use std::sync::atomic::AtomicBool;
-
 use axum::extract::State;
 use axum::http::request::Parts;
 use axum::response::Response;
 
 use crate::answer;
+use crate::compute::Task;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
 use crate::reply::reply;
 use crate::state::AppState;
 use crate::wire::convert::{ConvertRequest, ConvertResponse};
-use crate::wire::json;
 
 /// Writes a state in every coordinate system.
 ///
@@ -26,8 +24,8 @@ use crate::wire::json;
     request_body = ConvertRequest,
     responses((status = 200, description = "The state in every coordinate system.", body = ConvertResponse)),
 )]
-pub async fn convert(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
+pub async fn convert(State(app): State<AppState>, parts: Parts, body: Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;
-    let run = move |interrupt: &AtomicBool| answer::convert(json::parse(&body)?, interrupt);
-    reply(&app, "/convert", &parts.headers, format.media_type(), run).await
+    let run = move |task: &Task| answer::convert(body.json(task)?, task);
+    reply(&app, "/convert", &parts, format.media_type(), run).await
 }

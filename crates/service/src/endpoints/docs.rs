@@ -1,15 +1,16 @@
 //! `GET /docs`: the API to read and to try, from files in the program; nothing comes from elsewhere.
 
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
 
 use axum::body::Bytes;
 use axum::extract::{OriginalUri, Path, State};
-use axum::http::{HeaderMap, header};
+use axum::http::header;
+use axum::http::request::Parts;
 use axum::response::{IntoResponse, Redirect, Response};
 use utoipa_swagger_ui::Config;
 
 use crate::answer::Answer;
+use crate::compute::Task;
 use crate::embedded::media_type;
 use crate::error::ApiError;
 use crate::metrics::Work;
@@ -29,7 +30,7 @@ pub async fn redirect() -> Redirect {
 ///
 /// # Errors
 /// [`ApiError::NotFound`] where there is none.
-pub async fn page(app: State<AppState>, uri: OriginalUri, request: HeaderMap) -> Result<Response, ApiError> {
+pub async fn page(app: State<AppState>, uri: OriginalUri, request: Parts) -> Result<Response, ApiError> {
     file(app, uri, Path("index.html".to_owned()), request).await
 }
 
@@ -41,7 +42,7 @@ pub async fn file(
     State(app): State<AppState>,
     OriginalUri(uri): OriginalUri,
     Path(name): Path<String>,
-    request: HeaderMap,
+    request: Parts,
 ) -> Result<Response, ApiError> {
     let file = match utoipa_swagger_ui::serve(&name, Arc::clone(&CONFIG)) {
         Ok(Some(file)) => file,
@@ -52,7 +53,7 @@ pub async fn file(
         }
     };
     let media_type = media_type(&name);
-    let job = move |_: &AtomicBool| Ok(Answer { body: file.bytes.into_owned(), work: Work::default() });
+    let job = move |_: &Task| Ok(Answer { body: file.bytes.into_owned(), work: Work::default() });
     let response = reply(&app, "/docs/{*name}", &request, media_type, job).await?;
     Ok(([(header::CONTENT_SECURITY_POLICY, POLICY), (header::CACHE_CONTROL, "no-cache")], response).into_response())
 }
@@ -65,7 +66,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'u
 ///
 /// # Errors
 /// When the service is busy.
-pub async fn document(app: &AppState, request: &HeaderMap, text: Bytes) -> Result<Response, ApiError> {
-    let job = move |_: &AtomicBool| Ok(Answer { body: text.into(), work: Work::default() });
+pub async fn document(app: &AppState, request: &Parts, text: Bytes) -> Result<Response, ApiError> {
+    let job = move |_: &Task| Ok(Answer { body: text.into(), work: Work::default() });
     reply(app, "/openapi.json", request, "application/json", job).await
 }

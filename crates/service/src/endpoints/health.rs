@@ -39,7 +39,7 @@ pub async fn live() -> Json<Health> {
 pub async fn ready(State(app): State<AppState>) -> (StatusCode, Json<Health>) {
     let (code, status) = if app.is_draining() {
         (StatusCode::SERVICE_UNAVAILABLE, "draining")
-    } else if app.compute.has_room() && !app.memory.is_full() {
+    } else if app.compute.has_room() {
         (StatusCode::OK, "ok")
     } else {
         (StatusCode::SERVICE_UNAVAILABLE, "busy")

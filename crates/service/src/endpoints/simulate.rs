@@ -1,18 +1,16 @@
 //! `POST /simulate`: flies a case.
 
-use std::sync::atomic::AtomicBool;
-
 use axum::extract::State;
 use axum::http::request::Parts;
 use axum::response::Response;
 
 use crate::answer;
+use crate::compute::Task;
 use crate::error::ApiError;
 use crate::extract::Payload;
 use crate::format::Format;
 use crate::reply::reply;
 use crate::state::AppState;
-use crate::wire::json;
 use crate::wire::scenario::SimulateRequest;
 use crate::wire::trajectory::SimulateResponse;
 
@@ -44,9 +42,9 @@ use crate::wire::trajectory::SimulateResponse;
         )),
     ),
 )]
-pub async fn simulate(State(app): State<AppState>, parts: Parts, Payload(body): Payload) -> Result<Response, ApiError> {
+pub async fn simulate(State(app): State<AppState>, parts: Parts, body: Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &Format::OF_FLIGHTS)?;
     let row_limit = app.config.row_limit;
-    let run = move |interrupt: &AtomicBool| answer::simulate(json::parse(&body)?, format, row_limit, interrupt);
-    reply(&app, "/simulate", &parts.headers, format.media_type(), run).await
+    let run = move |task: &Task| answer::simulate(body.json(task)?, format, row_limit, task);
+    reply(&app, "/simulate", &parts, format.media_type(), run).await
 }

@@ -1,12 +1,11 @@
 //! `GET /validation`: the reference cases that are built into the program.
 
-use std::sync::atomic::AtomicBool;
-
 use axum::extract::State;
 use axum::http::request::Parts;
 use axum::response::Response;
 
 use crate::answer::Answer;
+use crate::compute::Task;
 use crate::error::ApiError;
 use crate::format::Format;
 use crate::metrics::Work;
@@ -28,9 +27,9 @@ use crate::validation::Validation;
 )]
 pub async fn validation(State(app): State<AppState>, parts: Parts) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;
-    let run = |interrupt: &AtomicBool| {
-        let body = Validation::run(interrupt)?.to_json().map_err(|_| ApiError::Internal)?;
+    let run = |task: &Task| {
+        let body = Validation::run(task)?.to_json().map_err(|_| ApiError::Internal)?;
         Ok(Answer { body, work: Work::default() })
     };
-    reply(&app, "/validation", &parts.headers, format.media_type(), run).await
+    reply(&app, "/validation", &parts, format.media_type(), run).await
 }

@@ -1,0 +1,23 @@
+//! Who may end a computation before its time.
+
+use std::fmt::Debug;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whoever asked for a computation: it may end it, suspend it, or bound what it holds in memory.
+pub trait Interrupt: Debug + Sync {
+    /// Whether the computation is to end. It is asked before every step, and every millisecond or so of what has no steps; as long as it
+    /// does not answer, the computation is suspended.
+    fn is_raised(&self) -> bool;
+
+    /// Whether the steps that a flight keeps may take so many bytes in all; else the flight ends.
+    fn may_hold(&self, _bytes: usize) -> bool {
+        true
+    }
+}
+
+/// A flag: once it is true, the computation is to end.
+impl Interrupt for AtomicBool {
+    fn is_raised(&self) -> bool {
+        self.load(Ordering::Relaxed)
+    }
+}
