@@ -201,7 +201,10 @@ impl Connection {
     }
 
     /// Writes all of it.
-    async fn write(&self, mut bytes: &[u8]) -> io::Result<()> {
+    ///
+    /// # Errors
+    /// When the connection breaks off.
+    pub async fn write(&self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             match self.stream.try_write(bytes) {
                 Ok(written) => bytes = &bytes[written..],

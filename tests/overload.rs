@@ -6,6 +6,8 @@
 //! answers all the while; the memory is that of the workers, not of the flood; and a second after it all is as before.
 //! A miss ends with status 1.
 //!
+//! Then come clients that want nothing but to be in the way, and beside them short requests of others, none of which is to be refused.
+//!
 //! The generator shares the processors of the service, so it is one thread that parses next to nothing, and says what
 //! part of a processor it took and how late it was. `overload brief` has short floods and holds no bar of time: for
 //! tests.
@@ -22,11 +24,14 @@ use reentry_tests::loopback::Program;
 use tokio::task::JoinSet;
 use tokio::time::Instant;
 
+use attacks::{ATTACKS, Beside};
 use bars::{Row, Times, Usual};
 use flood::{Connections, flood};
 use health::{Health, recover};
 use mix::{Kind, SHORT, Tally, draw, kinds};
 
+#[path = "overload/attacks.rs"]
+mod attacks;
 #[path = "overload/bars.rs"]
 mod bars;
 #[path = "overload/flood.rs"]
@@ -115,6 +120,13 @@ async fn run(plan: &Plan) -> io::Result<bool> {
         row.print(&usual, plan);
         missed.extend(row.missed(&usual, &kinds, plan));
         others = others.max(row.times.others());
+    }
+    drop(connections);
+    Beside::print_head();
+    for (attack, name, clients) in ATTACKS {
+        let beside = attack.run((name, clients), &program, &kinds[SHORT], &usual, plan.flood).await?;
+        beside.print();
+        missed.extend(beside.missed(plan));
     }
     for miss in &missed {
         eprintln!("missed {miss}");

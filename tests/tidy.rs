@@ -20,15 +20,15 @@ const CORE: [&[&str]; 11] = [
 
 /// The levels of the service.
 const SERVICE: [&[&str]; 13] = [
-    &["wire", "config", "metrics", "coding"],
+    &["wire", "config", "metrics", "coding", "allocator"],
     &["client"],
     &["memory"],
-    &["error", "connection", "telemetry"],
+    &["error", "telemetry"],
     &["embedded", "format", "openapi", "rate"],
     &["compute"],
     &["state"],
     &["middleware", "answer"],
-    &["extract", "validation", "reply"],
+    &["extract", "connection", "validation", "reply"],
     &["endpoints"],
     &["router"],
     &["serve"],
@@ -127,7 +127,7 @@ fn each_duty_has_one_place() {
         only("to_radians()", &["src/wire", "tests"]);
         only("spawn_blocking", &["src/compute.rs"]);
         only("UNPROCESSABLE_ENTITY", &["src/error.rs"]);
-        only("std::env", &["src/config.rs", "build.rs"]);
+        only("std::env", &["src/config.rs", "src/allocator.rs", "build.rs"]);
     }
 }
 

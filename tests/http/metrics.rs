@@ -194,7 +194,8 @@ async fn answers_are_held_until_they_are_taken_and_a_client_holds_its_share_at_m
     let router = reentry_service::app(app.clone());
     let ask = async |client: u8| {
         let body = with(&capsule(), "/output", json!({"trajectory": false})).to_string();
-        let request = Request::post("/simulate").header(header::CONTENT_TYPE, "application/json");
+        let request = Request::post("/simulate").header(header::HOST, "reentry.example");
+        let request = request.header(header::CONTENT_TYPE, "application/json");
         let mut request = request.body(Body::from(body)).unwrap();
         request.extensions_mut().insert(Peer(([203, 0, 113, client], 1234).into()));
         let Ok(answer) = router.clone().oneshot(request).await;

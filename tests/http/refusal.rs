@@ -11,15 +11,17 @@ use serde_json::{Value, json};
 use super::requests::{conversion, flight};
 
 /// The whole list of problems: type, title, status.
-const PROBLEMS: [(&str, &str, u16); 24] = [
+const PROBLEMS: [(&str, &str, u16); 27] = [
     ("/problems/invalid-json", "Not JSON", 400),
     ("/problems/invalid-query", "Invalid query string", 400),
     ("/problems/unreadable-body", "Unreadable body", 400),
+    ("/problems/malformed-request", "Malformed request", 400),
     ("/problems/not-found", "Not found", 404),
     ("/problems/method-not-allowed", "Method not allowed", 405),
     ("/problems/not-acceptable", "Not acceptable", 406),
     ("/problems/request-timeout", "Body too slow", 408),
     ("/problems/payload-too-large", "Payload too large", 413),
+    ("/problems/uri-too-long", "Path too long", 414),
     ("/problems/unsupported-media-type", "Unsupported media type", 415),
     ("/problems/unsupported-coding", "Unsupported content coding", 415),
     ("/problems/invalid-case", "Not a valid case", 422),
@@ -33,6 +35,7 @@ const PROBLEMS: [(&str, &str, u16); 24] = [
     ("/problems/no-mass-left", "No mass left", 422),
     ("/problems/overflow", "Loads out of range", 422),
     ("/problems/too-many-requests", "Too many requests", 429),
+    ("/problems/head-too-large", "Head of the request too large", 431),
     ("/problems/internal", "Internal error", 500),
     ("/problems/busy", "Busy", 503),
     ("/problems/deadline-exceeded", "Out of time", 504),

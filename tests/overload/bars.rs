@@ -75,6 +75,11 @@ impl Usual {
         Ok(Self { capacity, tallies, health, memory, workers, queue, worst_queue })
     }
 
+    /// The latency of a kind alone, ms, that so many of a hundred do not exceed.
+    pub(crate) fn percentile(&self, position: usize, percent: usize) -> f64 {
+        self.tallies[position].percentile(percent)
+    }
+
     /// What the median of short requests may be when all is as before, ms.
     pub(crate) fn calm(&self) -> f64 {
         CALM * self.tallies[SHORT].percentile(50)

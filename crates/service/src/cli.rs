@@ -32,7 +32,7 @@ pub struct Cli {
 /// What the program can do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the web service until SIGTERM or SIGINT; every flag can be set by its environment variable as well
+    /// Run the web service until SIGTERM, SIGINT or SIGQUIT; every flag can be set by its environment variable as well
     Serve(Box<Config>),
     /// Fly a case, or each of a list of cases: the JSON of POST /simulate
     #[command(after_help = [SIMULATE_EXAMPLES, EXIT_CODES].concat())]

@@ -1,7 +1,7 @@
 //! The pool of blocking threads on which every job runs: bounded, with a deadline, and cancelled when nobody waits any more.
 //!
 //! Single jobs and batches have workers of their own, so that neither waits for the other: what both compute at once, the system divides
-//! between them. Jobs that have computed for long give way to others, where they look at their flag: see [`Task`].
+//! between them. Jobs that have computed for long give way to short ones, where they look at their flag: see [`Task`].
 
 mod slots;
 mod turns;
@@ -14,6 +14,7 @@ use std::time::Duration;
 
 use bytes::Bytes;
 use reentry::Interrupt;
+use rustix::time::{ClockId, clock_gettime};
 use tokio::runtime::{Builder, Handle, Runtime};
 use tokio::sync::mpsc::error::TrySendError;
 use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore, mpsc};
@@ -27,7 +28,7 @@ use crate::memory::{HURRY, Memory, Permit};
 use crate::metrics::Metrics;
 use crate::rate::RateLimit;
 use slots::{Slot, Slots};
-use turns::{Turn, Turns, level};
+use turns::{LONG, Place, Turn, Turns};
 
 /// A runtime of its own whose blocking threads compute; the threads that talk to clients never do.
 #[derive(Debug)]
@@ -196,7 +197,7 @@ impl Compute {
         let late = || ApiError::DeadlineExceeded { seconds: self.deadline.min(left).as_secs_f64() };
         let asked = Instant::now();
         let mut queued = Queued::new(route, &self.metrics);
-        let Ok(turn) = timeout(left, pool.turns.ask(0, false)).await else {
+        let Ok(turn) = timeout(left, pool.turns.ask(Place::Short)).await else {
             queued.cause = "deadline";
             return Err(late());
         };
@@ -211,9 +212,10 @@ impl Compute {
             suspended: Arc::clone(&pool.suspended),
             state: Mutex::new(State {
                 turn: turn.ok(),
-                level: 0,
                 since: Instant::now(),
-                computed: Duration::ZERO,
+                look: Instant::now(),
+                begin: None,
+                is_long: false,
                 place,
                 was_suspended: false,
                 permit: Some(self.memory.answers.permit(client)),
@@ -225,6 +227,7 @@ impl Compute {
         };
         let memory = self.memory.clone();
         let handle = pool.threads()?.spawn_blocking(move || {
+            task.lock().begin = Some(processor_time());
             let result = memory.answers.admit(client).map_err(ApiError::from).and_then(|()| job(&task));
             // A job that was ended does not know why.
             let refusal = task.lock().refusal.take();
@@ -334,7 +337,7 @@ impl Drop for Caller {
     }
 }
 
-/// A job that runs, and looks at its flag: there it gives way to all that have computed less, and goes on when its turn comes again.
+/// A job that runs, and looks at its flag: there it gives way to short ones once it is long, and goes on when its turn comes again.
 ///
 /// It holds memory for its answer, and where there is none, it is suspended until there is.
 #[derive(Debug)]
@@ -353,12 +356,13 @@ pub struct Task {
 #[derive(Debug)]
 struct State {
     turn: Option<Turn>,
-    /// At which it has its turn.
-    level: usize,
     /// The instant from which it has its turn.
     since: Instant,
-    /// Before that.
-    computed: Duration,
+    /// The instant at which it looks next whether it is long.
+    look: Instant,
+    /// The processor time of its thread when it began, once it has.
+    begin: Option<Duration>,
+    is_long: bool,
     /// Its place in the queue or, once it has given way, among the suspended.
     place: Option<OwnedSemaphorePermit>,
     was_suspended: bool,
@@ -368,6 +372,13 @@ struct State {
     was_refused: bool,
     /// That reason, until it is told.
     refusal: Option<ApiError>,
+}
+
+impl State {
+    /// What the job has computed, asked on its own thread.
+    fn computed(&self) -> Duration {
+        self.begin.map_or(Duration::ZERO, |begin| processor_time().saturating_sub(begin))
+    }
 }
 
 impl Task {
@@ -391,19 +402,23 @@ impl Task {
         self.call.interrupt.store(true, Ordering::Relaxed);
     }
 
-    /// Gives way to those who wait on a level, if they have computed less.
-    fn give_way(&self, first_waiting: usize) {
+    /// Gives way to short jobs, if it is long.
+    fn give_way(&self) {
         let mut state = self.lock();
-        let level = level(state.computed + state.since.elapsed());
-        if first_waiting < level {
-            let again = level == state.level;
-            state.level = level;
-            self.suspend(&mut state, again, Duration::ZERO);
+        let now = Instant::now();
+        let was_long = state.is_long;
+        if !was_long && now >= state.look {
+            state.look = now + LOOK;
+            state.is_long = state.computed() >= LONG;
+        }
+        if state.is_long && self.turns.are_due(now - state.since) {
+            let place = if was_long { Place::LongAgain } else { Place::Long };
+            self.suspend(&mut state, place, Duration::ZERO);
         }
     }
 
     /// Suspends the job for a pause at least, and until its turn comes.
-    fn suspend(&self, state: &mut State, again: bool, pause: Duration) {
+    fn suspend(&self, state: &mut State, place: Place, pause: Duration) {
         if !state.was_suspended {
             let Ok(place) = Arc::clone(&self.suspended).try_acquire_owned() else {
                 return self.refuse(state, ApiError::Busy);
@@ -411,11 +426,10 @@ impl Task {
             state.place = Some(place);
             state.was_suspended = true;
         }
-        state.computed += state.since.elapsed();
         state.turn = None;
         self.metrics.job_suspended();
         thread::sleep(pause);
-        let turn = self.turns.ask(state.level, again);
+        let turn = self.turns.ask(place);
         state.turn = Handle::current().block_on(async {
             tokio::select! {
                 biased;
@@ -432,15 +446,22 @@ impl Task {
     }
 }
 
+/// Between two looks of a job at whether it is long, while others wait.
+const LOOK: Duration = Duration::from_millis(1);
+
 /// Between two looks of a job that waits for memory.
-const LOOK: Duration = Duration::from_millis(10);
+const PAUSE: Duration = Duration::from_millis(10);
+
+/// The processor time that this thread has taken, which the system does not count while others have the processor.
+fn processor_time() -> Duration {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    Duration::try_from(time).unwrap_or_default()
+}
 
 impl Interrupt for Task {
     fn is_raised(&self) -> bool {
-        if !self.is_over()
-            && let Some(first) = self.turns.first_waiting()
-        {
-            self.give_way(first);
+        if !self.is_over() && self.turns.are_wanted() {
+            self.give_way();
         }
         self.is_over()
     }
@@ -455,7 +476,7 @@ impl Interrupt for Task {
             } else if permit.try_reserve(bytes).is_ok() {
                 return true;
             } else {
-                self.suspend(&mut state, true, LOOK);
+                self.suspend(&mut state, Place::LongAgain, PAUSE);
             }
         }
         false
@@ -469,7 +490,8 @@ impl Drop for Task {
             let is_late = self.call.is_late.load(Ordering::Relaxed);
             self.metrics.job_cancelled(self.route, if is_late { "deadline" } else { "disconnect" });
         }
-        let computed = state.computed + state.since.elapsed();
+        // It is dropped by the thread on which it ran.
+        let computed = state.computed();
         self.metrics.job_over(self.route, computed);
         if let Some(limit) = &self.rate_limit {
             limit.charge(self.client, computed);

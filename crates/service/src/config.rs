@@ -65,7 +65,7 @@ pub struct Config {
     #[arg(long, env = "REENTRY_IDLE", default_value = "30", value_parser = seconds)]
     pub idle: Duration,
 
-    /// Seconds that requests may go on after SIGTERM or SIGINT
+    /// Seconds that requests may go on after SIGTERM, SIGINT or SIGQUIT
     #[arg(long, env = "REENTRY_GRACE", default_value = "20", value_parser = seconds)]
     pub grace: Duration,
 

@@ -1,4 +1,6 @@
 //! A connection: HTTP/1.1 over TCP, with a client that may be slow, silent, or speak something else.
+//!
+//! What hyper itself answers to a head that is no request has no body; the stream writes a problem document in its place.
 
 use std::io::{self, IoSlice};
 use std::pin::Pin;
@@ -7,14 +9,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
 
+use axum::http::StatusCode;
+use bytes::{Buf, Bytes};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, Sleep, sleep};
 
 use crate::memory::{Budget, HURRY, SLOWEST};
 
+/// The answer to a head that is no request, by the status that hyper gives it.
+type Refuse = Box<dyn Fn(StatusCode) -> Vec<u8> + Send>;
+
 /// A stream of bytes that gives a client up that does not take what is sent to it.
-#[derive(Debug)]
 pub struct PatientStream {
     stream: TcpStream,
     answers: Arc<Budget>,
@@ -22,6 +28,9 @@ pub struct PatientStream {
     patience: Duration,
     stall: Option<Stall>,
     signs: Arc<Signs>,
+    refuse: Refuse,
+    /// Of the answer that is written in place of hyper's, what is still to be.
+    refusal: Option<Bytes>,
 }
 
 /// What is known of the client.
@@ -54,8 +63,24 @@ struct Stall {
 
 impl PatientStream {
     /// The stream of a client that may take nothing for so long.
-    pub fn new(stream: TcpStream, patience: Duration, answers: Arc<Budget>) -> Self {
-        Self { stream, answers, patience, stall: None, signs: Arc::default() }
+    pub fn new(stream: TcpStream, patience: Duration, answers: Arc<Budget>, refuse: Refuse) -> Self {
+        Self { stream, answers, patience, stall: None, signs: Arc::default(), refuse, refusal: None }
+    }
+
+    /// Writes the answer to a head that is no request in place of `own`, which is hyper's.
+    fn write_refusal(&mut self, context: &mut Context, status: StatusCode, own: usize) -> Poll<io::Result<usize>> {
+        let mut rest = self.refusal.take().unwrap_or_else(|| (self.refuse)(status).into());
+        while !rest.is_empty() {
+            let attempt = Pin::new(&mut self.stream).poll_write(context, &rest);
+            match self.judge(context, rest.len(), attempt) {
+                Poll::Ready(Ok(taken)) => rest.advance(taken),
+                other => {
+                    self.refusal = Some(rest);
+                    return other;
+                }
+            }
+        }
+        Poll::Ready(Ok(own))
     }
 
     /// What will be known of the client.
@@ -106,6 +131,30 @@ impl PatientStream {
     }
 }
 
+/// Where hyper's own answer begins to a head that is no request, if that is what the bytes end with, and its status. Answers of the service
+/// have an identifier.
+fn own_answer(bytes: &[u8]) -> Option<(usize, StatusCode)> {
+    if !bytes.ends_with(b"\r\n\r\n") {
+        return None;
+    }
+    let tail = &bytes[bytes.len().saturating_sub(LONGEST_OWN_ANSWER)..];
+    let start = tail.windows(VERSION.len()).rposition(|window| window == VERSION)?;
+    let own = str::from_utf8(&tail[start..]).ok()?;
+    let status = own.get(VERSION.len()..)?.get(..3)?.parse().ok()?;
+    let is_own = matches!(
+        status,
+        StatusCode::BAD_REQUEST | StatusCode::URI_TOO_LONG | StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE
+    ) && own.contains("\r\ncontent-length: 0\r\n")
+        && !own.contains("x-request-id");
+    is_own.then_some((bytes.len() - own.len(), status))
+}
+
+/// With which an answer begins.
+const VERSION: &[u8] = b"HTTP/1.1 ";
+
+/// Bytes of hyper's own answers at most: a status, a length, a date, and that the connection closes.
+const LONGEST_OWN_ANSWER: usize = 256;
+
 impl AsyncRead for PatientStream {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context, buffer: &mut ReadBuf) -> Poll<io::Result<()>> {
         let before = buffer.filled().len();
@@ -119,6 +168,11 @@ impl AsyncRead for PatientStream {
 
 impl AsyncWrite for PatientStream {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        let bytes = match own_answer(bytes) {
+            Some((0, status)) => return self.write_refusal(context, status, bytes.len()),
+            Some((start, _)) => &bytes[..start],
+            None => bytes,
+        };
         let attempt = Pin::new(&mut self.stream).poll_write(context, bytes);
         self.judge(context, bytes.len(), attempt)
     }
@@ -128,6 +182,15 @@ impl AsyncWrite for PatientStream {
         context: &mut Context,
         slices: &[IoSlice],
     ) -> Poll<io::Result<usize>> {
+        // Hyper's own answer has no body, hence it is in the last slice, alone or after the end of another answer.
+        if let Some((start, _)) = slices.last().and_then(|last| own_answer(last)) {
+            match slices {
+                [own] => return self.poll_write(context, own),
+                [others @ .., _] if start == 0 => return self.poll_write_vectored(context, others),
+                [first, ..] => return self.poll_write(context, first),
+                [] => {}
+            }
+        }
         let attempt = Pin::new(&mut self.stream).poll_write_vectored(context, slices);
         self.judge(context, slices.iter().map(|slice| slice.len()).sum(), attempt)
     }

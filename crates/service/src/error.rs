@@ -22,6 +22,15 @@ pub enum ApiError {
     /// The query string has something that it should not have.
     #[error("{0}")]
     BadQuery(String),
+    /// The head of the request is not what HTTP has.
+    #[error("{0}")]
+    MalformedRequest(&'static str),
+    /// The target of the request is too long.
+    #[error("the path and the query are longer than a request may have them")]
+    UriTooLong,
+    /// The head of the request is too long.
+    #[error("the head of the request is longer than 16384 bytes, or has more than 100 fields")]
+    HeadTooLarge,
     /// The body ended early.
     #[error("the body could not be read: {0}")]
     UnreadableBody(String),
@@ -152,6 +161,11 @@ impl ApiError {
         match self {
             Self::NotJson(_) | Self::CaseNotJson(_) => (Status::BAD_REQUEST, "/problems/invalid-json", "Not JSON"),
             Self::BadQuery(_) => (Status::BAD_REQUEST, "/problems/invalid-query", "Invalid query string"),
+            Self::MalformedRequest(_) => (Status::BAD_REQUEST, "/problems/malformed-request", "Malformed request"),
+            Self::UriTooLong => (Status::URI_TOO_LONG, "/problems/uri-too-long", "Path too long"),
+            Self::HeadTooLarge => {
+                (Status::REQUEST_HEADER_FIELDS_TOO_LARGE, "/problems/head-too-large", "Head of the request too large")
+            }
             Self::UnreadableBody(_) => (Status::BAD_REQUEST, "/problems/unreadable-body", "Unreadable body"),
             Self::BodyTimeout { .. } => (Status::REQUEST_TIMEOUT, "/problems/request-timeout", "Body too slow"),
             Self::NotFound(_) => (Status::NOT_FOUND, "/problems/not-found", "Not found"),

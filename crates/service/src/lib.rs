@@ -2,6 +2,7 @@
 //!
 //! Read [`router`] first, then [`endpoints`]; [`wire`] holds the JSON, [`compute`] the threads, [`cli`] the commands.
 
+pub mod allocator;
 pub mod answer;
 pub mod cli;
 pub mod client;

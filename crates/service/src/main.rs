@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use std::process::ExitCode;
 
 use clap::Parser;
+use reentry_service::allocator::tune;
 use reentry_service::cli::{Cli, Failure};
 use reentry_service::config::Config;
 use reentry_service::serve::{serve, stop_signal};
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
 
 fn run(config: Config) -> Result<(), Failure> {
     config.check().map_err(Failure::Setting)?;
+    tune();
     let log = Log::start(&config);
     Ok(listen(config, &log)?)
 }

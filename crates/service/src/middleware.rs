@@ -1,21 +1,23 @@
 //! What happens around every request: its identifier, its line in the log, its place in the metrics, what a client may send, and what a
 //! browser may do with the answer.
 
+use std::net::SocketAddr;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, header};
+use axum::http::uri::Authority;
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use hyper::body::{Frame, SizeHint};
 use tracing::Instrument;
 use uuid::Uuid;
 
-use crate::client::{Client, client};
-use crate::error::Outcome;
+use crate::client::{Client, Peer, client};
+use crate::error::{ApiError, Outcome};
 use crate::state::AppState;
 
 /// The header that names a request, in the request and in its answer.
@@ -25,8 +27,11 @@ const LONGEST_REQUEST_ID: usize = 128;
 
 /// The route of a request, as the OpenAPI document has it; `other` at none.
 pub fn route(request: &Request) -> String {
-    request.extensions().get::<MatchedPath>().map_or("other", MatchedPath::as_str).to_owned()
+    request.extensions().get::<MatchedPath>().map_or(OTHER, MatchedPath::as_str).to_owned()
 }
+
+/// What is at no route.
+const OTHER: &str = "other";
 
 /// Gives every answer an `x-request-id`, and every request one line in the log and its place in the metrics.
 ///
@@ -150,6 +155,53 @@ impl HttpBody for Observed {
         }
         both
     }
+}
+
+/// Refuses requests that came over a connection without saying once to whom they go (RFC 9112, section 3.2).
+pub async fn check_host(request: Request, next: Next) -> Response {
+    let mut hosts = request.headers().get_all(header::HOST).iter();
+    let wrong = match (hosts.next(), hosts.next()) {
+        (Some(_), Some(_)) => Some("the request must have one Host, not several"),
+        (Some(host), None) if !host.is_empty() && Authority::try_from(host.as_bytes()).is_err() => {
+            Some("Host must be a name or an address, with a port or without")
+        }
+        (None, _) if request.version() > Version::HTTP_10 => Some("the request must have a Host"),
+        _ => None,
+    };
+    match wrong {
+        Some(wrong) if request.extensions().get::<Peer>().is_some() => {
+            ApiError::MalformedRequest(wrong).into_response()
+        }
+        _ => next.run(request).await,
+    }
+}
+
+/// The answer to a head that is no request, as bytes; with its line in the log and its place in the metrics.
+pub fn refuse_head(app: &AppState, peer: SocketAddr, status: StatusCode) -> Vec<u8> {
+    let error = match status {
+        StatusCode::URI_TOO_LONG => ApiError::UriTooLong,
+        StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE => ApiError::HeadTooLarge,
+        _ => ApiError::MalformedRequest("the head of the request is not HTTP/1.1"),
+    };
+    let (id, body) = (new_id(), error.problem().to_json());
+    app.metrics.request_begun(OTHER);
+    app.metrics.request_over(OTHER, error.outcome(), Duration::ZERO, body.len() as u64);
+    let (id, client) = (id.to_str().unwrap_or_default(), peer.ip().to_canonical());
+    let (status, bytes) = (status.as_u16(), body.len());
+    tracing::info!(id, %client, status, bytes, "refused what is no request");
+    let mut headers = HeaderMap::from_iter(PROTECTION);
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+    headers.insert(header::CONTENT_LENGTH, bytes.into());
+    headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
+    let mut text = format!("HTTP/1.1 {status} {}\r\n{REQUEST_ID}: {id}\r\n", error.problem().title).into_bytes();
+    for (name, value) in &headers {
+        for part in [name.as_str().as_bytes(), b": ", value.as_bytes(), b"\r\n"] {
+            text.extend_from_slice(part);
+        }
+    }
+    text.extend_from_slice(b"\r\n");
+    text.extend(body);
+    text
 }
 
 /// Refuses what a client sends beyond its rate, and tells it what it has left; watching the service is free.

@@ -46,17 +46,18 @@ const ALTERNATIVES: [(&str, &[&str]); 10] = [
 
 /// Every failure that every endpoint may answer with.
 const FAILURES: [(&str, &str); 12] = [
-    ("400", "Not JSON, duplicate keys, or an unknown query parameter."),
+    ("400", "Not JSON, duplicate keys, an unknown query parameter, or a head that is no request."),
     ("404", "There is nothing at this path."),
     ("405", "The path does not know this method."),
     ("406", "None of the representations that the client accepts."),
-    ("408", "The body did not come in the time allowed."),
-    ("413", "The body is too long."),
-    ("415", "The body is not declared as JSON."),
+    ("408", "The body did not come in the time allowed, or too slowly where memory is short."),
+    ("413", "The body is too long; of one in gzip or Zstandard, its text."),
+    ("415", "The body is not declared as JSON, or comes in another `Content-Encoding` than gzip or zstd."),
     ("422", "Not a valid case, or a flight that cannot be finished; every fault with its pointer."),
     (
         "429",
-        "More requests than this client may send, where there is a rate limit; `Retry-After` says when to come back.",
+        "More than this client may ask for: requests and computing where there is a rate limit, half of the memory or of the batches; \
+         `Retry-After` says when to come back.",
     ),
     ("500", "A fault of the service."),
     ("503", "Busy; `Retry-After` says when to come back."),

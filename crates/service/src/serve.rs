@@ -22,6 +22,7 @@ use tower::ServiceExt;
 
 use crate::client::Peer;
 use crate::connection::PatientStream;
+use crate::middleware::refuse_head;
 use crate::rate::FORGETTING;
 use crate::router::{app, metrics_app};
 use crate::state::AppState;
@@ -177,7 +178,11 @@ async fn converse(
 ) {
     // An error: the connection has ended already.
     let _ = stream.set_nodelay(true);
-    let stream = PatientStream::new(stream, state.config.idle, Arc::clone(&state.memory.answers));
+    let refuse = {
+        let state = state.clone();
+        Box::new(move |status| refuse_head(&state, peer, status))
+    };
+    let stream = PatientStream::new(stream, state.config.idle, Arc::clone(&state.memory.answers), refuse);
     let signs = stream.signs();
     let answer = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(Peer(peer));
@@ -211,7 +216,7 @@ async fn closed(closing: &mut watch::Receiver<bool>) {
     let _ = closing.wait_for(|closing| *closing).await;
 }
 
-/// Waits for SIGTERM or SIGINT.
+/// Waits for SIGTERM, SIGINT or SIGQUIT. SIGHUP, which a terminal sends when it closes, ends nothing: settings are read once.
 ///
 /// # Errors
 /// When the system lets no handler be set.
@@ -219,10 +224,16 @@ pub fn stop_signal() -> io::Result<impl Future<Output = ()> + Send + 'static> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut terminate = signal(SignalKind::terminate())?;
     let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut quit = signal(SignalKind::quit())?;
+    let mut hangup = signal(SignalKind::hangup())?;
     Ok(async move {
-        tokio::select! {
-            _ = terminate.recv() => {}
-            _ = interrupt.recv() => {}
+        loop {
+            tokio::select! {
+                _ = terminate.recv() => return,
+                _ = interrupt.recv() => return,
+                _ = quit.recv() => return,
+                _ = hangup.recv() => tracing::info!("SIGHUP changes nothing: settings are read at the start"),
+            }
         }
     })
 }

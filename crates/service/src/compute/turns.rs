@@ -1,38 +1,47 @@
-//! Whose turn it is to compute: those who have computed least come first.
+//! Whose turn it is to compute: short jobs come first, and long ones have half of the time at least.
 
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot::{Receiver, Sender, channel};
 
-/// What a job may compute before it gives way to all that have computed less, level by level. Most flights take less than the first; on
-/// the last level, beyond all of these, jobs are finished one after another, since they would all come late if they took turns.
-const LEVELS: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(50)];
+/// From here on a job is long, by the processor time that it has taken. Nearly all flights take less.
+pub(super) const LONG: Duration = Duration::from_millis(50);
 
-/// No level.
-const NONE: usize = LEVELS.len() + 1;
-
-/// The level of a job that has computed for so long.
-pub(super) fn level(computed: Duration) -> usize {
-    LEVELS.partition_point(|bound| *bound <= computed)
-}
+/// What short jobs may compute beyond the half that is theirs, while long ones wait.
+const LEAD: Duration = Duration::from_millis(5);
 
 /// The turns of some workers.
 #[derive(Debug)]
 pub(super) struct Turns {
     state: Mutex<State>,
-    /// The first level on which somebody waits.
-    first: AtomicUsize,
+    /// Whether a short job waits.
+    short_waits: AtomicBool,
+    /// How much longer short jobs have computed, while long ones waited, than long ones have since, ns.
+    lead: AtomicU64,
 }
 
 #[derive(Debug)]
 struct State {
     /// Turns that nobody has.
     free: usize,
-    /// Those who wait, on each level, the next one first.
-    waiting: [VecDeque<Sender<Turn>>; NONE],
+    /// Those who wait, the next one first.
+    short: VecDeque<Sender<Turn>>,
+    /// The same of long jobs: they are finished one after another, since they would all come late if they took turns.
+    long: VecDeque<Sender<Turn>>,
+}
+
+/// Which place in the queue a job asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Behind the other short jobs.
+    Short,
+    /// Behind the other long jobs.
+    Long,
+    /// Before the other long jobs, as it has given its turn to short ones.
+    LongAgain,
 }
 
 /// A worker's turn, which goes to the next when it is dropped.
@@ -40,45 +49,65 @@ struct State {
 pub(super) struct Turn {
     /// None once it has gone on.
     turns: Option<Arc<Turns>>,
+    is_long: bool,
+    since: Instant,
 }
 
 impl Turns {
     pub(super) fn new(workers: usize) -> Arc<Self> {
-        let state = State { free: workers, waiting: std::array::from_fn(|_| VecDeque::new()) };
-        Arc::new(Self { state: Mutex::new(state), first: AtomicUsize::new(NONE) })
+        let state = State { free: workers, short: VecDeque::new(), long: VecDeque::new() };
+        Arc::new(Self { state: Mutex::new(state), short_waits: AtomicBool::new(false), lead: AtomicU64::new(0) })
     }
 
-    /// Asks for a turn; `again` where one on this level had to give way, and goes on before the others of its level.
-    pub(super) fn ask(self: &Arc<Self>, level: usize, again: bool) -> Receiver<Turn> {
+    /// Asks for a turn.
+    pub(super) fn ask(self: &Arc<Self>, place: Place) -> Receiver<Turn> {
         let (sender, receiver) = channel();
         let mut state = self.lock();
-        if again {
-            state.waiting[level].push_front(sender);
-        } else {
-            state.waiting[level].push_back(sender);
+        match place {
+            Place::Short => state.short.push_back(sender),
+            Place::Long => state.long.push_back(sender),
+            Place::LongAgain => state.long.push_front(sender),
         }
         self.hand_out(&mut state);
         receiver
     }
 
-    /// The first level on which somebody waits, if anybody does.
-    pub(super) fn first_waiting(&self) -> Option<usize> {
-        Some(self.first.load(Ordering::Relaxed)).filter(|first| *first < NONE)
+    /// Whether a short job waits.
+    pub(super) fn are_wanted(&self) -> bool {
+        self.short_waits.load(Ordering::Relaxed)
+    }
+
+    /// Whether a long job that has had its turn for so long is to give it to a short one.
+    pub(super) fn are_due(&self, had: Duration) -> bool {
+        self.are_wanted() && self.lead() <= had
+    }
+
+    fn lead(&self) -> Duration {
+        Duration::from_nanos(self.lead.load(Ordering::Relaxed))
+    }
+
+    /// A job has had its turn for so long.
+    fn count(&self, state: &State, is_long: bool, had: Duration) {
+        let lead = match is_long {
+            true => self.lead().saturating_sub(had),
+            false if state.long.is_empty() => return,
+            false => self.lead() + had,
+        };
+        self.lead.store(u64::try_from(lead.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
     }
 
     /// Gives what turns there are to those who wait.
     fn hand_out(self: &Arc<Self>, state: &mut State) {
         while state.free > 0
-            && let Some(next) = state.waiting.iter_mut().find_map(VecDeque::pop_front)
+            && let Some((is_long, next)) = state.next(self.lead() > LEAD)
         {
             // One who has gone wants none.
-            match next.send(Turn { turns: Some(Arc::clone(self)) }) {
+            match next.send(Turn { turns: Some(Arc::clone(self)), is_long, since: Instant::now() }) {
                 Ok(()) => state.free -= 1,
                 Err(mut refused) => refused.turns = None,
             }
         }
-        let first = state.waiting.iter().position(|waiting| !waiting.is_empty());
-        self.first.store(first.unwrap_or(NONE), Ordering::Relaxed);
+        self.short_waits.store(!state.short.is_empty(), Ordering::Relaxed);
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -86,10 +115,22 @@ impl Turns {
     }
 }
 
+impl State {
+    /// The next, and whether it is a long one.
+    fn next(&mut self, long_first: bool) -> Option<(bool, Sender<Turn>)> {
+        let of = |queue: &mut VecDeque<_>, is_long| queue.pop_front().map(|next| (is_long, next));
+        if long_first && !self.long.is_empty() {
+            return of(&mut self.long, true);
+        }
+        of(&mut self.short, false).or_else(|| of(&mut self.long, true))
+    }
+}
+
 impl Drop for Turn {
     fn drop(&mut self) {
         if let Some(turns) = self.turns.take() {
             let mut state = turns.lock();
+            turns.count(&state, self.is_long, self.since.elapsed());
             state.free += 1;
             turns.hand_out(&mut state);
         }
@@ -100,40 +141,54 @@ impl Drop for Turn {
 mod tests {
     use std::time::Duration;
 
-    use super::{Turns, level};
+    use super::{Place, Turns};
 
     #[test]
-    fn a_job_comes_to_the_next_level_when_it_has_computed_for_so_long() {
-        let milliseconds = [0, 4, 5, 49, 50, 10_000];
-        assert_eq!(milliseconds.map(|time| level(Duration::from_millis(time))), [0, 0, 1, 1, 2, 2]);
-    }
-
-    #[test]
-    fn who_has_computed_least_is_next_and_who_gave_way_is_first_of_its_level() {
+    fn short_jobs_are_next_and_a_long_one_that_gave_way_is_the_first_of_the_long() {
         let turns = Turns::new(1);
-        let mut running = turns.ask(0, false).try_recv().unwrap();
-        assert_eq!(turns.first_waiting(), None);
-        let waiting = [(2, false), (1, false), (2, true), (0, false), (0, false)];
-        let mut waiting = waiting.map(|(level, again)| turns.ask(level, again));
-        for next in [3, 4, 1, 2, 0] {
+        let mut running = turns.ask(Place::Short).try_recv().unwrap();
+        assert!(!turns.are_wanted());
+        let waiting = [Place::Long, Place::LongAgain, Place::Short, Place::Short];
+        let mut waiting = waiting.map(|place| turns.ask(place));
+        for next in [2, 3, 1, 0] {
             assert!(waiting.iter_mut().all(|receiver| receiver.try_recv().is_err()));
             drop(running);
             running = waiting[next].try_recv().unwrap();
         }
-        assert_eq!(turns.first_waiting(), None);
+        assert!(!turns.are_wanted());
+    }
+
+    #[test]
+    fn long_jobs_have_half_of_the_time() {
+        let turns = Turns::new(1);
+        let running = turns.ask(Place::Short).try_recv().unwrap();
+        let (mut short, mut long) = (turns.ask(Place::Short), turns.ask(Place::Long));
+        let are_due = |had| turns.are_due(Duration::from_millis(had));
+        assert!(are_due(0));
+        turns.count(&turns.lock(), false, Duration::from_millis(10));
+        // The lead of the short ones is to be made up for.
+        assert!(!are_due(9));
+        drop(running);
+        assert!(short.try_recv().is_err());
+        let running = long.try_recv().unwrap();
+        assert!(!are_due(9));
+        turns.count(&turns.lock(), true, Duration::from_secs(1));
+        assert!(are_due(0));
+        drop(running);
+        assert!(short.try_recv().is_ok());
     }
 
     #[test]
     fn a_turn_passes_those_by_who_have_gone() {
         let turns = Turns::new(1);
-        let running = turns.ask(0, false).try_recv().unwrap();
-        drop(turns.ask(0, false));
-        let given = turns.ask(1, false);
-        let mut last = turns.ask(2, false);
+        let running = turns.ask(Place::Short).try_recv().unwrap();
+        drop(turns.ask(Place::Short));
+        let given = turns.ask(Place::Short);
+        let mut last = turns.ask(Place::Long);
         drop(running);
         // It was given, and not taken.
         drop(given);
         assert!(last.try_recv().is_ok());
-        assert!(turns.ask(0, false).try_recv().is_ok());
+        assert!(turns.ask(Place::Short).try_recv().is_ok());
     }
 }

@@ -1,0 +1,25 @@
+//! What the C library does with memory that is free.
+
+use std::env;
+use std::os::unix::process::CommandExt;
+use std::process::Command;
+
+/// The variable by which the GNU C library is told, before a program begins, from which size on memory is returned to the system as soon
+/// as it is free.
+const THRESHOLD: &str = "MALLOC_MMAP_THRESHOLD_";
+
+/// 1 MiB. Without the variable the library raises its threshold to the size of what was last freed, and after a flood of large answers
+/// keeps hundreds of megabytes. A lower one costs the answers of 1000 rows a fifth of their rate.
+const BYTES: &str = "1048576";
+
+/// Begins the program anew with the variable, unless it has it. Where that fails, it goes on as it is: it then takes more memory.
+pub fn tune() {
+    if cfg!(not(target_env = "gnu")) || env::var_os(THRESHOLD).is_some() {
+        return;
+    }
+    let mut arguments = env::args_os();
+    if let (Ok(program), Some(name)) = (env::current_exe(), arguments.next()) {
+        // It returns where it fails, alone.
+        let _ = Command::new(program).arg0(name).args(arguments).env(THRESHOLD, BYTES).exec();
+    }
+}
