@@ -6,7 +6,7 @@ import type { Case, State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
-import { CONVECTIVE, type Field, type Fields, type Kind, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
+import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
 import { exchanged, forget } from './held';
 import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
 import type { Property } from './schema';
@@ -569,7 +569,7 @@ type VariantProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: '
 /** One of several kinds. The initial state keeps what it is where its coordinate system changes. */
 function Variant({ field, path, property }: VariantProps) {
   const type = get(draft.value, [...path, 'type']) as string | undefined;
-  const kind: Kind | undefined = type === undefined ? undefined : field.kinds[type];
+  const kind = kindOf(field.kinds, type);
   const change = (next: string) => {
     if (path[0] === 'initial_state') void retype(next as State['type']);
     else put(path, exchanged(path, type ?? '', next, next === '' ? undefined : { type: next }));
