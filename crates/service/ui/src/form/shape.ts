@@ -3,7 +3,7 @@ import { type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THR
 
 /** The bytes that a case may have: the service takes no longer body, unless its settings say so. */
 export const LONGEST = 1 << 20;
-/** How many objects and arrays may lie within each other; the forms go down nine. */
+/** How many objects and arrays may lie within each other; the forms go down seven. */
 const DEEPEST = 32;
 /** Of so many faults each is told. */
 const TOLD = 3;
