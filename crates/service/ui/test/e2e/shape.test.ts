@@ -37,11 +37,13 @@ const STRANGE: [string, () => string, string][] = [
   ['a text', () => 'altitude, speed', 'is not valid JSON'],
 ];
 
+const WITHIN = { timeout: 10_000 };
+
 /** The page still flies: a mass that is typed changes the flight. */
 async function flies({ page, complaints }: Opened): Promise<void> {
   const before = await figure(page, 'Time');
   await page.locator('#field\\/vehicle\\/mass').fill('1234');
-  await expect.poll(() => figure(page, 'Time')).not.toBe(before);
+  await expect.poll(() => figure(page, 'Time'), WITHIN).not.toBe(before);
   expect(await page.locator('.card').count()).toBeGreaterThan(5);
   expect(complaints).toEqual([]);
 }
@@ -51,7 +53,7 @@ describe.each(STRANGE)('%s', (_, textOf, why) => {
     const fragment = fragmentOf(textOf());
     const opened = await open(browser, `${service.address}/${fragment}`);
     await opened.page.getByText('The case of this link cannot be opened').filter({ hasText: why }).waitFor();
-    await expect.poll(() => new URL(opened.page.url()).hash).not.toBe(fragment);
+    await expect.poll(() => new URL(opened.page.url()).hash, WITHIN).not.toBe(fragment);
     await flies(opened);
     await opened.page.close();
   });
@@ -64,7 +66,7 @@ describe.each(STRANGE)('%s', (_, textOf, why) => {
     }, fragmentOf(textOf()));
     await page.getByText(why).waitFor();
     // The address is that of the case again.
-    await expect.poll(() => fromFragment(new URL(page.url()).hash).catch(() => null)).toEqual(example('target_2'));
+    await expect.poll(() => fromFragment(new URL(page.url()).hash).catch(() => null), WITHIN).toEqual(example('target_2'));
     await page.getByRole('button', { name: 'Dismiss' }).click();
     const buffer = Buffer.from(textOf().slice(0, 2e6));
     await page.locator('#file').setInputFiles({ name: 'case.json', mimeType: 'application/json', buffer });
@@ -108,7 +110,7 @@ it.each(['initial_state', 'atmosphere', 'wind', 'aerodynamics'])(
       expect(await page.evaluate(() => document.activeElement?.id)).toBe(`field${pointer}`);
     }
     await page.getByLabel('Open', { exact: true }).selectOption({ index: 2 });
-    await expect.poll(() => page.getByRole('alert').count()).toBe(0);
+    await expect.poll(() => page.getByRole('alert').count(), WITHIN).toBe(0);
     await flies(opened);
     await page.close();
   },
@@ -125,7 +127,7 @@ it('of thousands of events a hundred are shown, and the page answers meanwhile',
   await page.getByRole('button', { name: 'Show more' }).click();
   expect(await page.locator('.list-item').count()).toBe(200);
   await page.getByRole('button', { name: 'Undo' }).click();
-  await expect.poll(() => page.getByRole('alert').count()).toBe(0);
+  await expect.poll(() => page.getByRole('alert').count(), WITHIN).toBe(0);
   await flies(opened);
   await page.close();
 });
