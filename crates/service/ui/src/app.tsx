@@ -3,10 +3,10 @@ import type { ComponentType } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import { address, type Case } from './api';
 import { Cards, Computing, Problems, Sensitivities, Warnings } from './cards';
-import { whyNoCase } from './case';
 import { Compare, Pin, Theories } from './compare';
 import { open, opened, start } from './fly';
 import { Form } from './form/form';
+import { whyNoCase } from './form/shape';
 import { future, past, recent, redo, undo } from './history';
 import { remember, remembered } from './memory';
 import { Plots } from './plots/plots';
@@ -103,9 +103,13 @@ function Notes({ name }: { name: string | undefined }) {
   );
 }
 
+/** The bytes that a file may have: an answer, with its rows, is longer than a case. */
+const LONGEST_FILE = 64 << 20;
+
 /** Opens the case of a file: a case, or an answer that repeats its own. A file that has none changes nothing. */
 async function openFile(file: File): Promise<void> {
   try {
+    if (file.size > LONGEST_FILE) throw new Error('it is longer than 64 MiB');
     const tree = JSON.parse(await file.text());
     const found = tree?.case ?? tree;
     const why = whyNoCase(found);

@@ -9,21 +9,29 @@ export function pointer(path: Path): string {
   return path.map((part) => `/${String(part).replaceAll('~', '~0').replaceAll('/', '~1')}`).join('');
 }
 
-/** What is at a path; undefined where there is nothing. */
+/** What is at a path; undefined where there is nothing. What objects have by nature, such as `at` of lists, is not in them. */
 export function get(tree: unknown, path: Path): unknown {
-  return path.reduce<unknown>((at, part) => (at as Record<string | number, unknown> | null | undefined)?.[part], tree);
+  return path.reduce<unknown>(
+    (at, part) =>
+      typeof at === 'object' && at !== null && Object.hasOwn(at, part) ? (at as Record<string | number, unknown>)[part] : undefined,
+    tree,
+  );
 }
 
 /** A tree with something else at a path; undefined takes it away. Parts that are not on the way are shared, none is changed. */
 export function set<T>(tree: T, path: Path, value: unknown): T {
   const [part, ...rest] = path;
   if (part === undefined) return value as T;
-  const copy = (Array.isArray(tree) ? [...tree] : { ...tree }) as Record<string | number, unknown>;
-  const inner = set(copy[part] ?? (typeof rest[0] === 'number' ? [] : {}), rest, value);
-  if (inner !== undefined) copy[part] = inner;
-  else if (Array.isArray(copy)) copy.splice(Number(part), 1);
-  else delete copy[part];
-  return copy as T;
+  const inner = set(get(tree, [part]) ?? (typeof rest[0] === 'number' ? [] : {}), rest, value);
+  if (Array.isArray(tree)) {
+    const copy = [...tree];
+    if (inner === undefined) copy.splice(Number(part), 1);
+    else copy[Number(part)] = inner;
+    return copy as T;
+  }
+  // Written so, a part that is called `__proto__` is one like others.
+  const { [part]: _, ...others } = tree as Record<string | number, unknown>;
+  return (inner === undefined ? others : { ...tree, [part]: inner }) as T;
 }
 
 /** A case without the optional parts in which nothing is left. */
@@ -75,16 +83,6 @@ export function turned(value: unknown, from: AngleUnit, to: AngleUnit): unknown 
 export function legible(value: unknown, from: AngleUnit, to: AngleUnit): unknown {
   if (from === to || typeof value !== 'number') return value;
   return Number((turned(value, from, to) as number).toPrecision(14));
-}
-
-/** What keeps a value from being a case; null where nothing does. Whether it can be flown the service says. */
-export function whyNoCase(value: unknown): string | null {
-  if (typeof value !== 'object' || value === null || Array.isArray(value)) return 'it is not a JSON object';
-  const missing = ['vehicle', 'initial_state'].filter((name) => {
-    const part = (value as Record<string, unknown>)[name];
-    return typeof part !== 'object' || part === null;
-  });
-  return missing.length === 0 ? null : `it has no ${missing.join(' and no ')}`;
 }
 
 /** A case with its angles in another unit: the same flight. Degrees are rounded to what one reads, radians not. */

@@ -6,7 +6,7 @@ import { forget } from './form/held';
 import { begin, follow, keep, separate } from './history';
 import { fromFragment, toFragment } from './link';
 import { drawn } from './plots/curves';
-import { added, current, draft, isBusy, pins, problem, solution, theory, theoryProblem, waiting } from './store';
+import { added, current, draft, isBusy, notice, pins, problem, solution, theory, theoryProblem, waiting } from './store';
 
 /** At most so often, ms, a case that is being changed is flown; less often where the service asks for that. */
 const INTERVAL = { least: 30, most: 2000 };
@@ -51,15 +51,23 @@ export function start(): void {
   addEventListener('hashchange', () => void opened());
 }
 
-/** Takes the case of the address, if it has one; whether it has. */
+/** Takes the case of the address, if it has one; whether it has. Why a link cannot be opened the reader is told, and keeps what is there. */
 export async function opened(): Promise<boolean> {
   const { hash } = location;
   if (hash === address) return address !== '';
-  const found = await fromFragment(hash);
+  const found = await fromFragment(hash).catch((error: Error) => error);
   // The reader may have gone on meanwhile.
   if (location.hash !== hash) return true;
   address = hash;
-  if (found) take(found);
+  if (found instanceof Error) {
+    notice.value = `The case of this link cannot be opened: ${found.message}.`;
+    if (Object.keys(draft.peek()).length > 0) kept();
+    return false;
+  }
+  if (found) {
+    notice.value = null;
+    take(found);
+  }
   return found !== null;
 }
 

@@ -1,6 +1,7 @@
 import { batch, effect, signal, untracked } from '@preact/signals';
 import type { Case } from './api';
 import { tidied } from './case';
+import { whyNoCase } from './form/shape';
 import { remember, remembered } from './memory';
 import { draft } from './store';
 
@@ -127,7 +128,9 @@ export function keep(tree: Case): void {
 function read(): Recent[] {
   try {
     const found = JSON.parse(remembered('recent') ?? '[]');
-    return Array.isArray(found) ? found.filter((entry) => entry?.case?.vehicle && entry.case.initial_state) : [];
+    const isSound = (entry: Partial<Recent> | null) =>
+      Number.isFinite(entry?.id) && Number.isFinite(entry?.at) && whyNoCase(entry?.case) === null;
+    return Array.isArray(found) ? found.filter(isSound) : [];
   } catch {
     return [];
   }

@@ -5,6 +5,12 @@ export function asJson(tree: Case): string {
   return JSON.stringify(tree, null, 2);
 }
 
+/** What a file of the case is called, without an ending: its name as every system takes it, which is letters and digits, and 255 bytes at most. */
+export function fileName({ name }: Case): string {
+  const words = [...String(name ?? '').replaceAll(/[^\p{L}\p{M}\p{N}_.-]+/gu, '_')].slice(0, 60).join('');
+  return words.replace(/^[_.-]+/, '').replace(/[_.-]+$/, '') || 'flight';
+}
+
 /** A command for a shell that flies the case. */
 export function asCurl(tree: Case): string {
   return `curl '${address('simulate')}' -H 'content-type: application/json' -d '${asJson(tree).replaceAll("'", "'\\''")}'\n`;

@@ -3,7 +3,7 @@ import { type Case, download, ProblemError } from './api';
 import { set, tidied } from './case';
 import { copied } from './clipboard';
 import { toFragment } from './link';
-import { asCurl, asJson, asPython } from './snippets';
+import { asCurl, asJson, asPython, fileName } from './snippets';
 import { draft } from './store';
 
 const FORMATS = ['csv', 'json', 'geojson', 'kml', 'czml'] as const;
@@ -25,7 +25,7 @@ export function Take() {
   const save = async (format: (typeof FORMATS)[number]) => {
     try {
       const blob = await download(`simulate?format=${format}`, bodyFor(format));
-      saved(blob, `${fileName()}.${format}`);
+      saved(blob, `${fileName(draft.value)}.${format}`);
       say(`${format.toUpperCase()} saved`);
     } catch (error) {
       say(
@@ -61,7 +61,7 @@ export function Take() {
         ))}
         <button
           type="button"
-          onClick={() => saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName()}.case.json`)}
+          onClick={() => saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName(draft.value)}.case.json`)}
         >
           Case file
         </button>
@@ -82,10 +82,6 @@ function bodyFor(format: (typeof FORMATS)[number]): Case {
   if (format === 'json') return tree;
   const { sensitivities: _, verify: __, ...flight } = tree;
   return format === 'csv' ? flight : tidied(set(flight, ['output', 'columns'], undefined));
-}
-
-function fileName(): string {
-  return (draft.value.name ?? 'flight').replaceAll(/[^\w.-]+/g, '_');
 }
 
 function saved(blob: Blob, name: string): void {

@@ -41,6 +41,11 @@ export interface Kind {
   fields: Fields;
 }
 
+/** The kind of a variant that a `type` tells; undefined where it is none, whatever a case has there. */
+export function kindOf(kinds: Record<string, Kind>, type: unknown): Kind | undefined {
+  return typeof type === 'string' && Object.hasOwn(kinds, type) ? kinds[type] : undefined;
+}
+
 /** A field for every property of a schema: one that is added to the contract and not here does not compile. */
 type Of<T> = Record<Exclude<keyof T, 'type'>, Field>;
 

@@ -6,7 +6,7 @@ import type { Case, State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
-import { CONVECTIVE, type Field, type Fields, type Kind, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
+import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
 import { exchanged, forget } from './held';
 import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
 import type { Property } from './schema';
@@ -569,7 +569,7 @@ type VariantProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: '
 /** One of several kinds. The initial state keeps what it is where its coordinate system changes. */
 function Variant({ field, path, property }: VariantProps) {
   const type = get(draft.value, [...path, 'type']) as string | undefined;
-  const kind: Kind | undefined = type === undefined ? undefined : field.kinds[type];
+  const kind = kindOf(field.kinds, type);
   const change = (next: string) => {
     if (path[0] === 'initial_state') void retype(next as State['type']);
     else put(path, exchanged(path, type ?? '', next, next === '' ? undefined : { type: next }));
@@ -712,13 +712,17 @@ function Along({ label, words, path, property }: AlongProps) {
 
 type ListProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: 'list' }> };
 
+/** A long list is shown so many elements at a time: the page would stand still as long as it makes the forms of thousands. */
+const SHOWN = 100;
+
 function List({ field, path, isBare }: ListProps) {
+  const [most, setMost] = useState(SHOWN);
   const items = (get(draft.value, path) as unknown[] | undefined) ?? [];
   return (
     <div class="list">
       {!isBare && <p class="list-title">{field.label}</p>}
       <Faults path={path} />
-      {items.map((_, index) => (
+      {items.slice(0, most).map((_, index) => (
         <div class="list-item" key={`${items.length}-${index}`}>
           <div class="list-head">
             <span>
@@ -738,6 +742,11 @@ function List({ field, path, isBare }: ListProps) {
           <Item field={field.item} path={[...path, index]} isBare />
         </div>
       ))}
+      {items.length > most && (
+        <button type="button" id={idOf(path)} onClick={() => setMost(most + SHOWN)}>
+          Show more: {items.length - most} of {items.length} are not shown
+        </button>
+      )}
       <button type="button" onClick={() => put(path, [...items, structuredClone(field.empty)])}>
         Add {/^[aeiou]/.test(field.one) ? 'an' : 'a'} {field.one}
       </button>

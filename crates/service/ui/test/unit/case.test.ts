@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Case } from '../../src/api';
-import { get, inUnit, legible, pointer, set, tidied, turned, typed, whyNoCase } from '../../src/case';
+import { get, inUnit, legible, pointer, set, tidied, turned, typed } from '../../src/case';
 import { type Field, type Fields, SECTIONS } from '../../src/form/fields';
 import { parsed, written } from '../../src/form/inputs';
 
@@ -22,6 +22,19 @@ describe('a path', () => {
   it('takes away fields and elements', () => {
     expect(set({ a: { b: 1, c: 2 } }, ['a', 'b'], undefined)).toEqual({ a: { c: 2 } });
     expect(set({ list: [1, 2, 3] }, ['list', 1], undefined)).toEqual({ list: [1, 3] });
+  });
+
+  it('has a part that is called as what objects have by nature only where that is written', () => {
+    for (const name of ['__proto__', 'constructor', 'toString']) {
+      expect(get({ a: {} }, ['a', name])).toBeUndefined();
+      const changed = set({ a: {} }, ['a', name, 'mass'], 5);
+      expect(Object.keys(changed.a)).toEqual([name]);
+      expect(get(changed, ['a', name, 'mass'])).toBe(5);
+      expect(set(changed, ['a', name], undefined)).toEqual({ a: {} });
+    }
+    expect(get([1], ['at'])).toBeUndefined();
+    expect(get('text', ['length'])).toBeUndefined();
+    expect('mass' in {}).toBe(false);
   });
 
   it('makes lists where a place in one is written', () => {
@@ -150,17 +163,6 @@ describe('an angle in the other unit', () => {
     expect(turned('twelve', 'deg', 'rad')).toBe('twelve');
     expect(legible(undefined, 'deg', 'rad')).toBeUndefined();
   });
-});
-
-it.each([
-  [[], 'it is not a JSON object'],
-  [null, 'it is not a JSON object'],
-  [{ type: 'FeatureCollection', features: [] }, 'it has no vehicle and no initial_state'],
-  [{ vehicle: {} }, 'it has no initial_state'],
-  [{ vehicle: null, initial_state: 'x' }, 'it has no vehicle and no initial_state'],
-  [{ vehicle: {}, initial_state: {} }, null],
-])('%j is no case, or is one', (value, why) => {
-  expect(whyNoCase(value)).toBe(why);
 });
 
 it('a tidied case has no optional part in which nothing is left', () => {

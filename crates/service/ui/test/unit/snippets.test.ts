@@ -1,7 +1,7 @@
 import { execFileSync } from 'node:child_process';
 import { beforeAll, expect, it, vi } from 'vitest';
 import type { Case } from '../../src/api';
-import { asCurl, asJson, asPython } from '../../src/snippets';
+import { asCurl, asJson, asPython, fileName } from '../../src/snippets';
 
 const TREE = {
   name: 'Bob\'s "Ω" \\ case $HOME `x`',
@@ -32,4 +32,27 @@ it('Python reads the case as it is', () => {
   const literal = program.slice(program.indexOf('case = '), program.indexOf('response ='));
   const written = execFileSync('python3', ['-c', `import json\n${literal}\nprint(json.dumps(case))`], { encoding: 'utf8' });
   expect(JSON.parse(written)).toEqual(TREE);
+});
+
+it.each([
+  ['TARGET reference case 1', 'TARGET_reference_case_1'],
+  ['../../etc/passwd', 'etc_passwd'],
+  ['C:\\x|y?.exe', 'C_x_y_.exe'],
+  ['Böck 日本 नमस्ते', 'Böck_日本_नमस्ते'],
+  ['a\u202Egpj.\u0000exe\n', 'a_gpj._exe'],
+  ['...', 'flight'],
+  ['🚀', 'flight'],
+  ['', 'flight'],
+  [undefined, 'flight'],
+  [5, '5'],
+])('a file of the case %j is called %s', (name, file) => {
+  expect(fileName({ name } as unknown as Case)).toBe(file);
+});
+
+it('a file has a name of 255 bytes at most, with its ending', () => {
+  for (const letter of ['x', 'ü', '日', '𠀀']) {
+    const name = fileName({ name: letter.repeat(1000) } as Case);
+    expect(new TextEncoder().encode(`${name}.case.json`).length).toBeLessThanOrEqual(255);
+    expect(name).toBe(letter.repeat(60));
+  }
 });
