@@ -35,7 +35,7 @@ ORBIT = {
 }
 # The same with a million rows: seconds. It needs the flags.
 LONG = {**ORBIT, "output": {"count": 1_000_000}}
-LONG_FLAGS = ("--row-limit", "1000000", "--deadline", "60", "--grace", "60")
+LONG_FLAGS = ("--row-limit", "1000000", "--memory", str(2 << 30), "--deadline", "60", "--grace", "60")
 
 
 @dataclass

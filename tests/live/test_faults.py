@@ -191,7 +191,7 @@ def test_a_full_disk_under_standard_error_changes_no_answer():
         (["--connections", "0"], {}, "must be at least 1"),
         (["--deadline", "1e300"], {}, "--deadline"),
         (["--deadline", "nan"], {}, "--deadline"),
-        (["--memory", "1000"], {}, "--memory, 1000 bytes, must be at least --body-limit and --batch-body-limit"),
+        (["--memory", "1000"], {}, "--memory, 1000 bytes, must be at least 16 times --body-limit and 8 times --batch-body-limit, 67108864 bytes"),
         (["--rate-limit", "0"], {}, "from 0.001 to 1000000"),
         (["--rate-burst", "0"], {}, "--rate-burst"),
         (["--trusted-proxies", "10.0.0.0/33"], {}, "must be a network"),

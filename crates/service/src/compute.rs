@@ -131,8 +131,13 @@ impl Compute {
                     Err(TrySendError::Full(result)) => {
                         // Nothing is computed until the reader has taken something: the slot is for another.
                         slot = None;
-                        if !matches!(timeout(compute.patience(), results.send(result)).await, Ok(Ok(()))) {
-                            return;
+                        match timeout(compute.patience(), results.send(result)).await {
+                            Ok(Ok(())) => {}
+                            Ok(Err(_)) => return,
+                            Err(_) => {
+                                tracing::info!("the batch ended early, as its reader took nothing");
+                                return;
+                            }
                         }
                     }
                 }

@@ -20,7 +20,7 @@ pub struct Config {
     #[arg(long, env = "REENTRY_WORKERS", default_value_t = 0, value_parser = up_to(1024))]
     pub workers: usize,
 
-    /// Requests that may wait for a worker; one more is refused with 503
+    /// Requests that may wait for a worker, and as many again that give way to shorter ones; one more is refused with 503
     #[arg(long, env = "REENTRY_QUEUE", default_value_t = 64, value_parser = up_to(1 << 20))]
     pub queue: usize,
 
@@ -32,7 +32,7 @@ pub struct Config {
     #[arg(long, env = "REENTRY_BODY_LIMIT", default_value_t = 1 << 20)]
     pub body_limit: usize,
 
-    /// Batches that may be under way at once; one more is refused with 503
+    /// Batches that may compute at once, half of them of one client; one more is refused with 503 or 429
     #[arg(long, env = "REENTRY_BATCHES", default_value_t = 16, value_parser = up_to(1 << 20))]
     pub batches: usize,
 
@@ -69,7 +69,8 @@ pub struct Config {
     #[arg(long, env = "REENTRY_GRACE", default_value = "20", value_parser = seconds)]
     pub grace: Duration,
 
-    /// Requests a second that one client may send on average; one more is refused with 429. No limit by default
+    /// Requests a second that one client may send on average, where 10 ms of computing count as one; more are refused with 429. No limit by
+    /// default
     #[arg(long, env = "REENTRY_RATE_LIMIT", value_name = "RATE", value_parser = rate)]
     pub rate_limit: Option<f64>,
 
