@@ -7,7 +7,8 @@ use reentry::simulate::SimulationError;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use crate::wire::reader::Fault;
+use crate::wire::reader::{Fault, MOST_FAULTS};
+use crate::wire::shown::printable;
 
 /// What went wrong with a request.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +57,7 @@ pub enum ApiError {
     )]
     UnsupportedMediaType(String),
     /// The request is JSON, but not a valid case.
-    #[error("the request has {} {}", .0.len(), if .0.len() == 1 { "fault" } else { "faults" })]
+    #[error("the request has {}", counted(.0))]
     Invalid(Vec<Fault>),
     /// More rows than allowed.
     #[error("the trajectory would have more than the {limit} rows allowed")]
@@ -104,7 +105,7 @@ pub struct Problem {
     pub status: u16,
     /// This problem, for people.
     pub detail: String,
-    /// The fields that are at fault.
+    /// The fields that are at fault: the first 100. Where there are more, a last entry without a pointer says so.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub errors: Vec<FieldError>,
@@ -130,7 +131,7 @@ impl ApiError {
     /// The problem document.
     pub fn problem(&self) -> Problem {
         let (status, kind, title) = self.class();
-        Problem { kind, title, status: status.as_u16(), detail: self.to_string(), errors: self.fields() }
+        Problem { kind, title, status: status.as_u16(), detail: printable(&self.to_string()), errors: self.fields() }
     }
 
     /// The one table: status, type and title.
@@ -186,10 +187,12 @@ impl ApiError {
     fn fields(&self) -> Vec<FieldError> {
         let one = |pointer: &str, detail: String| vec![FieldError { pointer: pointer.to_owned(), detail }];
         match self {
-            Self::Invalid(faults) => faults
-                .iter()
-                .map(|Fault { pointer, detail }| FieldError { pointer: pointer.clone(), detail: detail.clone() })
-                .collect(),
+            Self::Invalid(faults) => {
+                let told = faults.iter().take(MOST_FAULTS).cloned();
+                let rest = || Fault::new("", format!("there are more faults than these {MOST_FAULTS}"));
+                let rest = (faults.len() > MOST_FAULTS).then(rest);
+                told.chain(rest).map(|Fault { pointer, detail }| FieldError { pointer, detail }).collect()
+            }
             Self::TooManyRows { limit, pointer } => one(
                 pointer,
                 format!("would give more than the {limit} rows allowed; ask for fewer, for example with count"),
@@ -229,6 +232,15 @@ impl ApiError {
     pub fn outcome(&self) -> &'static str {
         let (_, kind, _) = self.class();
         kind.rsplit('/').next().unwrap_or(kind)
+    }
+}
+
+/// How many faults there are, as far as they were counted.
+fn counted(faults: &[Fault]) -> String {
+    match faults.len() {
+        1 => "1 fault".to_owned(),
+        count if count <= MOST_FAULTS => format!("{count} faults"),
+        _ => format!("more than {MOST_FAULTS} faults"),
     }
 }
 
