@@ -1,6 +1,6 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -10,6 +10,7 @@ use reentry::simulate::{SimulationError, simulate as fly};
 use reentry::trajectory::{FlightPoint, Trajectory};
 use reentry::verification::verify;
 use serde_json::Value;
+use sysinfo::{MemoryRefreshKind, System};
 
 use crate::error::ApiError;
 use crate::format::Format;
@@ -31,6 +32,9 @@ pub struct Answer {
     pub work: Work,
 }
 
+/// The greatest limit of rows that the service and the command line take: what some 10 GB hold.
+pub const MOST_ROWS: usize = 10_000_000;
+
 /// Flies a case; `interrupt` ends it early, wherever it is.
 ///
 /// # Errors
@@ -47,8 +51,9 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let work = work(&flight, points.as_deref());
     let extras = extras(&job, &flight, interrupt)?;
     let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
+    let count = work.rows;
     let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
-    let mut out = Written::new(interrupt);
+    let mut out = Written::new(count, interrupt);
     let written = match (format, &response.trajectory) {
         (Format::Csv, Some(rows)) => rows.write_csv(&mut out),
         (Format::Geojson, Some(rows)) => track(rows)?.write_geojson(&mut out),
@@ -104,7 +109,14 @@ fn rows(
 ) -> Result<Option<Vec<FlightPoint>>, ApiError> {
     let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
-    let mut points = Vec::with_capacity(instants.len());
+    let too_large = ApiError::NoMemory { rows: instants.len() as u64 };
+    if instants.len() > ROWS_THAT_ALWAYS_FIT
+        && available_memory().is_some_and(|bytes| bytes / BYTES_OF_A_ROW < instants.len() as u64)
+    {
+        return Err(too_large);
+    }
+    let mut points = Vec::new();
+    points.try_reserve_exact(instants.len()).map_err(|_| too_large)?;
     for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
         if interrupt.load(Ordering::Relaxed) {
             return Err(ApiError::Interrupted);
@@ -117,6 +129,24 @@ fn rows(
     }
 }
 
+/// Rows for which nobody asks the system whether it has the memory.
+const ROWS_THAT_ALWAYS_FIT: usize = 100_000;
+
+/// What a row takes while its answer is made, as measured: some 300 bytes as numbers and 500 as text, and 80 more for each column on
+/// request.
+const BYTES_OF_A_ROW: u64 = 1024;
+
+/// Bytes that are free, as far as the system tells: asking for more does not fail there, but has the program killed later on. Several
+/// cases at once each see the same, so that this is no promise.
+fn available_memory() -> Option<u64> {
+    let mut system = System::new().ok()?;
+    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
+    // A container may have less than the machine.
+    let allowed = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    let free = Some(system.available_memory()).filter(|free| *free > 0);
+    free.into_iter().chain(allowed).min()
+}
+
 /// Rows that are evaluated between two looks at the flag: about a millisecond.
 const ROWS_BETWEEN_LOOKS: usize = 2048;
 
@@ -126,7 +156,7 @@ const ROWS_BETWEEN_LOOKS: usize = 2048;
 /// When the state is not sound.
 pub fn convert(tree: Value, interrupt: &AtomicBool) -> Result<Answer, ApiError> {
     let response = ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?;
-    let mut out = Written::new(interrupt);
+    let mut out = Written::new(0, interrupt);
     let written = serde_json::to_writer(&mut out, &response);
     Ok(Answer { body: out.whole(written)?, work: Work::default() })
 }
@@ -143,7 +173,7 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
     let extras = extras(&analytic.job, &flight, interrupt)?;
     let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, comparison, extras);
-    let mut out = Written::new(interrupt);
+    let mut out = Written::new(work.rows, interrupt);
     let written =
         if format == Format::Csv { response.write_csv(&mut out) } else { serde_json::to_writer(&mut out, &response) };
     Ok(Answer { body: out.whole(written)?, work })
@@ -152,6 +182,8 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &Atomi
 /// Text that is being written until a flag is raised.
 struct Written<'a> {
     text: Vec<u8>,
+    /// Rows that it tells of.
+    rows: u64,
     interrupt: &'a AtomicBool,
     /// The length at which the flag is looked at next.
     look: usize,
@@ -161,13 +193,16 @@ struct Written<'a> {
 const BYTES_BETWEEN_LOOKS: usize = 1 << 18;
 
 impl<'a> Written<'a> {
-    fn new(interrupt: &'a AtomicBool) -> Self {
-        Self { text: Vec::new(), interrupt, look: BYTES_BETWEEN_LOOKS }
+    fn new(rows: u64, interrupt: &'a AtomicBool) -> Self {
+        Self { text: Vec::new(), rows, interrupt, look: BYTES_BETWEEN_LOOKS }
     }
 
-    /// The text, if it was written to its end: memory can always be written, so that only the flag ends it early.
+    /// The text, if it was written to its end: memory can always be written, so that only the flag ends it early, or the lack of more.
     fn whole(self, written: Result<(), serde_json::Error>) -> Result<Vec<u8>, ApiError> {
-        written.map(|()| self.text).map_err(|_| ApiError::Interrupted)
+        written.map(|()| self.text).map_err(|error| match error.io_error_kind() {
+            Some(ErrorKind::OutOfMemory) => ApiError::NoMemory { rows: self.rows },
+            _ => ApiError::Interrupted,
+        })
     }
 }
 
@@ -177,12 +212,13 @@ impl Write for Written<'_> {
     }
 
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.text.try_reserve(bytes.len())?;
         self.text.extend_from_slice(bytes);
         if self.text.len() >= self.look {
             self.look = self.text.len() + BYTES_BETWEEN_LOOKS;
             if self.interrupt.load(Ordering::Relaxed) {
                 // Not `Interrupted`, after which writers try again.
-                return Err(io::ErrorKind::Other.into());
+                return Err(ErrorKind::Other.into());
             }
         }
         Ok(())

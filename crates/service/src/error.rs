@@ -67,6 +67,12 @@ pub enum ApiError {
         /// The field that asks for them.
         pointer: &'static str,
     },
+    /// More rows than there is memory for.
+    #[error("the trajectory would have {rows} rows, and there is no memory for so many")]
+    NoMemory {
+        /// So many.
+        rows: u64,
+    },
     /// The flight cannot be finished.
     #[error("the flight cannot be finished: {0}")]
     Flight(#[from] SimulationError),
@@ -157,7 +163,9 @@ impl ApiError {
                 (Status::UNSUPPORTED_MEDIA_TYPE, "/problems/unsupported-media-type", "Unsupported media type")
             }
             Self::Invalid(_) => (Status::UNPROCESSABLE_ENTITY, "/problems/invalid-case", "Not a valid case"),
-            Self::TooManyRows { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows"),
+            Self::TooManyRows { .. } | Self::NoMemory { .. } => {
+                (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows")
+            }
             Self::Flight(flight) => match flight {
                 StepLimit { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-limit", "Too many steps"),
                 Singularity { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/singularity", "Singular equations"),
@@ -196,6 +204,10 @@ impl ApiError {
             Self::TooManyRows { limit, pointer } => one(
                 pointer,
                 format!("would give more than the {limit} rows allowed; ask for fewer, for example with count"),
+            ),
+            Self::NoMemory { rows } => one(
+                "/output",
+                format!("gives {rows} rows, more than there is memory for; ask for fewer, for example with count"),
             ),
             Self::Flight(SimulationError::Singularity { .. }) => {
                 one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
