@@ -3,10 +3,8 @@
 //! Single jobs and batches have workers of their own, so that neither waits for the other: what both compute at once, the system divides
 //! between them. The jobs of all batches take turns.
 
-use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, mpsc::sync_channel};
-use std::thread;
 use std::time::Duration;
 
 use tokio::runtime::{Builder, Runtime};
@@ -14,7 +12,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
 use tokio::time::{Instant, timeout};
 use tracing::{Instrument, Span};
 
-use crate::config::{Config, processors};
+use crate::config::Config;
 use crate::error::ApiError;
 use crate::memory::Memory;
 use crate::metrics::Metrics;
@@ -254,38 +252,3 @@ impl Drop for Running<'_> {
         self.metrics.job_over(self.route, self.start.elapsed());
     }
 }
-
-/// Works on the items on all processors, for a program that serves nobody else, and hands the results over in order until `take`
-/// has enough; the flag of what then still runs is raised.
-pub fn in_order<I: Sync, R: Send>(
-    items: &[I],
-    work: impl Fn(&I, &AtomicBool) -> R + Sync,
-    mut take: impl FnMut(usize, R) -> ControlFlow<()>,
-) {
-    let threads = processors().min(items.len());
-    let (work, interrupt) = (&work, &AtomicBool::new(false));
-    thread::scope(|scope| {
-        // Thread k has the items k, k + threads, …: what is ahead of the next result is bounded, and nothing is to be sorted.
-        let start = |first| {
-            let (results, taken) = sync_channel(RESULTS_AHEAD);
-            scope.spawn(move || {
-                let mine = items.iter().skip(first).step_by(threads);
-                // An error: nobody takes any more.
-                let _ = mine.map(|item| results.send(work(item, interrupt))).find(Result::is_err);
-            });
-            taken
-        };
-        let lanes: Vec<_> = (0..threads).map(start).collect();
-        for index in 0..items.len() {
-            // A thread that has panicked sends nothing; its panic goes on at the end of the scope.
-            let Ok(result) = lanes[index % threads].recv() else { break };
-            if take(index, result).is_break() {
-                break;
-            }
-        }
-        interrupt.store(true, Ordering::Relaxed);
-    });
-}
-
-/// Results that a thread of [`in_order`] may be ahead.
-const RESULTS_AHEAD: usize = 16;

@@ -235,6 +235,15 @@ impl ApiError {
     }
 }
 
+/// How many faults there are, as far as they were counted.
+fn counted(faults: &[Fault]) -> String {
+    match faults.len() {
+        1 => "1 fault".to_owned(),
+        count if count <= MOST_FAULTS => format!("{count} faults"),
+        _ => format!("more than {MOST_FAULTS} faults"),
+    }
+}
+
 /// How a request ended, in a word, for those who count: kept beside the response.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome(pub &'static str);
@@ -244,15 +253,6 @@ impl ApiError {
     pub fn outcome(&self) -> &'static str {
         let (_, kind, _) = self.class();
         kind.rsplit('/').next().unwrap_or(kind)
-    }
-}
-
-/// How many faults there are, as far as they were counted.
-fn counted(faults: &[Fault]) -> String {
-    match faults.len() {
-        1 => "1 fault".to_owned(),
-        count if count <= MOST_FAULTS => format!("{count} faults"),
-        _ => format!("more than {MOST_FAULTS} faults"),
     }
 }
 
