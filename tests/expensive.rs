@@ -151,20 +151,51 @@ fn of_a_thousand_conditions_in_a_row_each_is_met_at_its_value() {
 }
 
 #[test]
-fn however_many_faults_there_are_a_thousand_are_told() {
+fn however_many_faults_there_are_a_hundred_are_told() {
     let members = |count: u32| (0..count).map(|index| (format!("{index:x}"), json!(0))).collect::<Value>();
     let events = list(1000, |_| json!({"a": 1, "b": 1, "c": 1, "when": {"d": 1}, "then": {"e": 1, "thrust": {}}}));
     let row = || list(1000, |_| Value::Null);
     let matrix = json!({"type": "alpha_mach_table", "angle_of_attack": numbers(100, -0.5, 0.01),
         "mach": numbers(1000, 0.0, 1.0), "lift_coefficient": list(100, |_| row()), "drag_coefficient": list(80, |_| row())});
+    let descending =
+        json!({"type": "table", "altitude": numbers(10_000, 1e5, -1.0), "east": teeth(10_000), "north": teeth(10_000)});
+    let released = list(900, |index| json!(index.to_string()));
+    let names = list(100, |_| json!({"when": {"quantity": "time", "rises_through": 1}, "then": {"release": released}}));
     for (name, request) in [
         ("fields", with(&plain(), "/control", members(90_000))),
         ("times", with(&plain(), "/output", json!({"times": list(500_000, |_| json!(0))}))),
         ("events", with(&plain(), "/events", events)),
         ("matrix", with(&plain(), "/vehicle/aerodynamics", matrix)),
+        ("descending", with(&plain(), "/wind", descending)),
+        ("names", with(&plain(), "/events", names)),
     ] {
         let problem = fly(&request, false).expect_err(name).problem();
-        assert_eq!(problem.errors.len(), 1001, "{name}");
-        assert!(problem.to_json().len() < BODY_LIMIT, "{name}: {} bytes", problem.to_json().len());
+        assert_eq!(problem.errors.len(), 101, "{name}");
+        assert_eq!(problem.detail, "the request has more than 100 faults", "{name}");
+        let last = problem.errors.last().unwrap();
+        assert_eq!((&*last.pointer, &*last.detail), ("", "there are more faults than these 100"), "{name}");
+        assert!(problem.to_json().len() < BODY_LIMIT / 32, "{name}: {} bytes", problem.to_json().len());
     }
+}
+
+#[test]
+fn what_a_fault_is_about_is_told_once() {
+    // A name of many characters is that of the pointer; the fields that there are are told with the first that is none.
+    let long = "x".repeat(250_000);
+    let fields = [("/name", json!([&long])), (&format!("/{long}"), json!(&long)), ("/other", json!(0))];
+    let errors = fly(&with_all(&plain(), fields), false).expect_err("unknown fields").problem().errors;
+    let [name, first, second] = &errors[..] else { panic!("{} errors", errors.len()) };
+    assert_eq!((&*name.pointer, &*name.detail), ("/name", "must be a string, got an array"));
+    assert_eq!(first.pointer.len(), 250_001);
+    assert!(first.detail.starts_with("is not a field here; the fields are "), "{}", first.detail);
+    assert_eq!((&*second.pointer, &*second.detail), ("/other", "is not a field here"));
+}
+
+/// The answer to a batch whose cases have as many faults as a body has room for.
+#[test]
+fn faults_of_many_cases_are_not_much_larger_than_the_cases() {
+    let members: Value = (0..1000).map(|index| (format!("{index:x}"), json!(0))).collect();
+    let case = members.to_string().len();
+    let problem = fly(&members, false).expect_err("unknown fields").problem().to_json().len();
+    assert!(problem < 2 * case, "{problem} bytes for {case}");
 }

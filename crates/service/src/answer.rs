@@ -1,6 +1,6 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::time::Instant;
 
 use reentry::Interrupt;
@@ -10,6 +10,7 @@ use reentry::simulate::{SimulationError, simulate as fly};
 use reentry::trajectory::{FlightPoint, Trajectory};
 use reentry::verification::verify;
 use serde_json::Value;
+use sysinfo::{MemoryRefreshKind, System};
 
 use crate::error::ApiError;
 use crate::format::Format;
@@ -101,9 +102,16 @@ fn extras(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<E
 fn rows(job: &Job, flight: &Trajectory, limit: usize, held: &mut Held) -> Result<Option<Vec<FlightPoint>>, ApiError> {
     let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
+    let too_large = ApiError::NoMemory { rows: instants.len() as u64 };
+    if instants.len() > ROWS_THAT_ALWAYS_FIT
+        && available_memory().is_some_and(|bytes| bytes / BYTES_OF_A_ROW < instants.len() as u64)
+    {
+        return Err(too_large);
+    }
     let columns = job.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
     held.reserve_rows(instants.len(), columns)?;
-    let mut points = Vec::with_capacity(instants.len());
+    let mut points = Vec::new();
+    points.try_reserve_exact(instants.len()).map_err(|_| too_large)?;
     for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
         if held.interrupt.is_raised() {
             return Err(ApiError::Interrupted);
@@ -114,6 +122,24 @@ fn rows(job: &Job, flight: &Trajectory, limit: usize, held: &mut Held) -> Result
         Some(point) => Err(SimulationError::Overflow { time: point.time }.into()),
         None => Ok(Some(points)),
     }
+}
+
+/// Rows for which nobody asks the system whether it has the memory.
+const ROWS_THAT_ALWAYS_FIT: usize = 100_000;
+
+/// What a row takes while its answer is made, as measured: some 300 bytes as numbers and 500 as text, and 80 more for each column on
+/// request.
+const BYTES_OF_A_ROW: u64 = 1024;
+
+/// Bytes that are free, as far as the system tells: asking for more does not fail there, but has the program killed later on. Several
+/// cases at once each see the same, so that this is no promise.
+fn available_memory() -> Option<u64> {
+    let mut system = System::new().ok()?;
+    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
+    // A container may have less than the machine.
+    let allowed = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    let free = Some(system.available_memory()).filter(|free| *free > 0);
+    free.into_iter().chain(allowed).min()
 }
 
 /// Rows that are evaluated between two looks at the flag: about a millisecond.
@@ -156,6 +182,8 @@ struct Held<'a> {
     bytes: usize,
     /// What may be held, the text included.
     reserved: usize,
+    /// Rows that it tells of.
+    rows: usize,
 }
 
 /// What a number takes in the text, bytes; for a map as many are reserved, which hold its places and their text.
@@ -163,16 +191,17 @@ const NUMBER: usize = 20;
 
 impl<'a> Held<'a> {
     fn nothing(interrupt: &'a dyn Interrupt) -> Self {
-        Self { interrupt, bytes: 0, reserved: 0 }
+        Self { interrupt, bytes: 0, reserved: 0, rows: 0 }
     }
 
     fn new(flight: &Trajectory, interrupt: &'a dyn Interrupt) -> Self {
         let bytes = flight.held();
-        Self { interrupt, bytes, reserved: bytes }
+        Self { interrupt, bytes, reserved: bytes, rows: 0 }
     }
 
     /// Reserves what rows take, and their text, at once: who has one part and waits for the other would be in the way of others.
     fn reserve_rows(&mut self, rows: usize, columns: usize) -> Result<(), ApiError> {
+        self.rows = rows;
         self.bytes += rows * size_of::<FlightPoint>();
         self.reserve(self.bytes + rows * columns * NUMBER)
     }
@@ -204,9 +233,12 @@ impl<'a> Written<'a> {
         Self { text: Vec::new(), held, look: BYTES_BETWEEN_LOOKS }
     }
 
-    /// The text, if it was written to its end: memory can always be written, so that only the flag ends it early.
+    /// The text, if it was written to its end: memory can always be written, so that only the flag ends it early, or the lack of more.
     fn whole(self, written: Result<(), serde_json::Error>) -> Result<Vec<u8>, ApiError> {
-        written.map(|()| self.text).map_err(|_| ApiError::Interrupted)
+        written.map(|()| self.text).map_err(|error| match error.io_error_kind() {
+            Some(ErrorKind::OutOfMemory) => ApiError::NoMemory { rows: self.held.rows as u64 },
+            _ => ApiError::Interrupted,
+        })
     }
 }
 
@@ -216,12 +248,13 @@ impl Write for Written<'_> {
     }
 
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.text.try_reserve(bytes.len())?;
         self.text.extend_from_slice(bytes);
         if self.text.len() >= self.look {
             self.look = self.text.len() + BYTES_BETWEEN_LOOKS;
             if self.held.interrupt.is_raised() || self.held.reserve(self.held.bytes + self.look).is_err() {
                 // Not `Interrupted`, after which writers try again.
-                return Err(io::ErrorKind::Other.into());
+                return Err(ErrorKind::Other.into());
             }
         }
         Ok(())

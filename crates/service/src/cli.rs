@@ -2,23 +2,27 @@
 
 pub mod cases;
 pub mod healthcheck;
+mod in_order;
+mod output;
 pub mod validate;
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
+use clap::error::ContextValue;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 
 use crate::answer;
 use crate::cli::cases::{Cases, States};
 use crate::cli::healthcheck::Healthcheck;
+use crate::cli::output::Output;
 use crate::cli::validate::Validate;
 use crate::config::Config;
 use crate::format::Format;
 use crate::router::document;
+use crate::wire::shown::printable;
 
 /// Flies vehicles back through the atmosphere.
 #[derive(Debug, Parser)]
@@ -88,7 +92,7 @@ Exit codes:
   1  a case failed: it is not valid, cannot be flown to its end, or, a reference case, came out otherwise than expected; or the
      service cannot listen or does not answer
   2  the command line is wrong
-  3  a file cannot be read or written
+  3  a file cannot be read or written, or standard output is closed
 ";
 
 const SIMULATE_EXAMPLES: &str = r#"Examples:
@@ -165,12 +169,36 @@ pub enum Failure {
     Service(#[from] io::Error),
 }
 
+impl Cli {
+    /// The command line; where it is wrong, says so and ends the program.
+    pub fn read() -> Self {
+        Self::try_parse().unwrap_or_else(|mut error| {
+            // What was given is shown to people.
+            let given: Vec<_> = error.context().map(|(kind, value)| (kind, value.clone())).collect();
+            for (kind, value) in given {
+                let shown = match value {
+                    ContextValue::String(text) => ContextValue::String(printable(&text)),
+                    ContextValue::Strings(texts) => {
+                        ContextValue::Strings(texts.iter().map(|text| printable(text)).collect())
+                    }
+                    ContextValue::StyledStrs(texts) => {
+                        ContextValue::StyledStrs(texts.iter().map(|text| printable(&text.to_string()).into()).collect())
+                    }
+                    other => other,
+                };
+                error.insert(kind, shown);
+            }
+            error.exit()
+        })
+    }
+}
+
 impl Failure {
     /// Says on standard error why the program ends, and with which code.
     pub fn end(&self) -> ExitCode {
         match self {
             Self::Case => {}
-            Self::File { .. } | Self::Setting(_) | Self::Service(_) => tell(&format!("reentry: {self}\n")),
+            Self::File { .. } | Self::Setting(_) | Self::Service(_) => tell(&[format!("reentry: {self}")]),
         }
         ExitCode::from(match self {
             Self::Case | Self::Service(_) => 1,
@@ -194,49 +222,13 @@ impl Command {
             Self::Validate(validate) => validate.run(),
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;
-                Output::Standard.write(b"ok\n").map(drop)
+                print(b"ok\n")
             }
-            Self::Openapi => Output::Standard.write(format!("{:#}\n", document()).as_bytes()).map(drop),
+            Self::Openapi => print(format!("{:#}\n", document()).as_bytes()),
             Self::Completions { shell } => {
                 let mut script = Vec::new();
                 clap_complete::generate(shell, &mut Cli::command(), "reentry", &mut script);
-                Output::Standard.write(&script).map(drop)
-            }
-        }
-    }
-}
-
-/// Where results go.
-#[derive(Debug)]
-enum Output {
-    Standard,
-    /// A file that is made when there is something to write: a failure leaves an older one as it is.
-    Path(PathBuf),
-    File(PathBuf, File),
-}
-
-impl Output {
-    fn new(path: Option<&Path>) -> Self {
-        path.map_or(Self::Standard, |path| Self::Path(path.to_owned()))
-    }
-
-    /// Writes, and says whether anybody reads on: a pipe that its reader has closed is no failure.
-    fn write(&mut self, bytes: &[u8]) -> Result<bool, Failure> {
-        if let Self::Path(path) = self {
-            let file = File::create(&*path).map_err(|error| failure("write", path, error))?;
-            *self = Self::File(std::mem::take(path), file);
-        }
-        match self {
-            Self::File(path, file) => {
-                file.write_all(bytes).map(|()| true).map_err(|error| failure("write", path, error))
-            }
-            Self::Standard | Self::Path(_) => {
-                let mut stdout = io::stdout().lock();
-                match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-                    Ok(()) => Ok(true),
-                    Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
-                    Err(error) => Err(failure("write", Path::new("standard output"), error)),
-                }
+                print(&script)
             }
         }
     }
@@ -246,7 +238,13 @@ fn failure(act: &'static str, path: &Path, error: io::Error) -> Failure {
     Failure::File { act, path: path.display().to_string(), error }
 }
 
-/// Writes on standard error; where nobody reads that, nobody is to be told.
-fn tell(text: &str) {
+/// Writes lines on standard error, as a person may safely read them; where nobody does, nobody is to be told.
+fn tell(lines: &[String]) {
+    let text: String = lines.iter().map(|line| printable(line) + "\n").collect();
     let _ = io::stderr().write_all(text.as_bytes());
+}
+
+/// Writes a result of one piece on standard output.
+fn print(bytes: &[u8]) -> Result<(), Failure> {
+    Output::new(None).write(bytes).map(drop)
 }

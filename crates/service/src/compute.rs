@@ -6,9 +6,8 @@
 mod slots;
 mod turns;
 
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc::sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -22,7 +21,7 @@ use tokio::time::{Instant, timeout};
 use tracing::{Instrument, Span};
 
 use crate::client::Client;
-use crate::config::{Config, processors};
+use crate::config::Config;
 use crate::error::ApiError;
 use crate::memory::{HURRY, Memory, Permit};
 use crate::metrics::Metrics;
@@ -503,38 +502,3 @@ impl Drop for Task {
         }
     }
 }
-
-/// Works on the items on all processors, for a program that serves nobody else, and hands the results over in order until `take`
-/// has enough; the flag of what then still runs is raised.
-pub fn in_order<I: Sync, R: Send>(
-    items: &[I],
-    work: impl Fn(&I, &AtomicBool) -> R + Sync,
-    mut take: impl FnMut(usize, R) -> ControlFlow<()>,
-) {
-    let threads = processors().min(items.len());
-    let (work, interrupt) = (&work, &AtomicBool::new(false));
-    thread::scope(|scope| {
-        // Thread k has the items k, k + threads, …: what is ahead of the next result is bounded, and nothing is to be sorted.
-        let start = |first| {
-            let (results, taken) = sync_channel(RESULTS_AHEAD);
-            scope.spawn(move || {
-                let mine = items.iter().skip(first).step_by(threads);
-                // An error: nobody takes any more.
-                let _ = mine.map(|item| results.send(work(item, interrupt))).find(Result::is_err);
-            });
-            taken
-        };
-        let lanes: Vec<_> = (0..threads).map(start).collect();
-        for index in 0..items.len() {
-            // A thread that has panicked sends nothing; its panic goes on at the end of the scope.
-            let Ok(result) = lanes[index % threads].recv() else { break };
-            if take(index, result).is_break() {
-                break;
-            }
-        }
-        interrupt.store(true, Ordering::Relaxed);
-    });
-}
-
-/// Results that a thread of [`in_order`] may be ahead.
-const RESULTS_AHEAD: usize = 16;

@@ -1,7 +1,7 @@
 //! The settings, from flags and environment, read once at start.
 
 use std::net::{IpAddr, SocketAddr};
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::{IntErrorKind, NonZeroU32, NonZeroUsize};
 use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
@@ -45,7 +45,7 @@ pub struct Config {
     pub batch_body_limit: usize,
 
     /// Rows that a trajectory may have; more are refused with 422
-    #[arg(long, env = "REENTRY_ROW_LIMIT", default_value_t = 100_000)]
+    #[arg(long, env = "REENTRY_ROW_LIMIT", default_value_t = 100_000, value_parser = up_to(MOST_ROWS))]
     pub row_limit: usize,
 
     /// Bytes from which an answer is compressed, if the client accepts that
@@ -102,6 +102,9 @@ pub struct Config {
     #[arg(long, env = "REENTRY_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     pub log_format: LogFormat,
 }
+
+/// The greatest limit of rows that the service and the command line take: what some 10 GB hold.
+pub const MOST_ROWS: usize = 10_000_000;
 
 /// The bodies of batches may have one part in so many of the memory.
 pub const BATCH_BODIES: usize = 8;
@@ -208,10 +211,11 @@ fn seconds(text: &str) -> Result<Duration, String> {
 }
 
 /// A whole number with a maximum.
-fn up_to(most: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let number = text.parse().map_err(|_| "must be a whole number".to_owned())?;
-        if number > most { Err(format!("must be at most {most}")) } else { Ok(number) }
+pub fn up_to(most: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |text| match text.parse::<usize>().map_err(|error| *error.kind()) {
+        Ok(number) if number <= most => Ok(number),
+        Ok(_) | Err(IntErrorKind::PosOverflow) => Err(format!("must be at most {most}")),
+        Err(_) => Err("must be a whole number".to_owned()),
     }
 }
 

@@ -8,7 +8,8 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use crate::memory::Refusal;
-use crate::wire::reader::Fault;
+use crate::wire::reader::{Fault, MOST_FAULTS};
+use crate::wire::shown::printable;
 
 /// What went wrong with a request.
 #[derive(Debug, thiserror::Error)]
@@ -69,7 +70,7 @@ pub enum ApiError {
     #[error("the body must be coded by gzip or zstd, or not at all, not by {0}")]
     UnsupportedCoding(String),
     /// The request is JSON, but not a valid case.
-    #[error("the request has {} {}", .0.len(), if .0.len() == 1 { "fault" } else { "faults" })]
+    #[error("the request has {}", counted(.0))]
     Invalid(Vec<Fault>),
     /// More rows than allowed.
     #[error("the trajectory would have more than the {limit} rows allowed")]
@@ -84,6 +85,12 @@ pub enum ApiError {
     TooLarge {
         /// The limit, bytes.
         limit: usize,
+    },
+    /// More rows than there is memory for.
+    #[error("the trajectory would have {rows} rows, and there is no memory for so many")]
+    NoMemory {
+        /// So many.
+        rows: u64,
     },
     /// The flight cannot be finished.
     #[error("the flight cannot be finished: {0}")]
@@ -123,7 +130,7 @@ pub struct Problem {
     pub status: u16,
     /// This problem, for people.
     pub detail: String,
-    /// The fields that are at fault.
+    /// The fields that are at fault: the first 100. Where there are more, a last entry without a pointer says so.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub errors: Vec<FieldError>,
@@ -149,7 +156,7 @@ impl ApiError {
     /// The problem document.
     pub fn problem(&self) -> Problem {
         let (status, kind, title) = self.class();
-        Problem { kind, title, status: status.as_u16(), detail: self.to_string(), errors: self.fields() }
+        Problem { kind, title, status: status.as_u16(), detail: printable(&self.to_string()), errors: self.fields() }
     }
 
     /// The one table: status, type and title.
@@ -183,7 +190,9 @@ impl ApiError {
                 (Status::UNSUPPORTED_MEDIA_TYPE, "/problems/unsupported-coding", "Unsupported content coding")
             }
             Self::Invalid(_) => (Status::UNPROCESSABLE_ENTITY, "/problems/invalid-case", "Not a valid case"),
-            Self::TooManyRows { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows"),
+            Self::TooManyRows { .. } | Self::NoMemory { .. } => {
+                (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows")
+            }
             Self::TooLarge { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/answer-too-large", "Answer too large"),
             Self::Flight(flight) => match flight {
                 StepLimit { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-limit", "Too many steps"),
@@ -215,13 +224,19 @@ impl ApiError {
     fn fields(&self) -> Vec<FieldError> {
         let one = |pointer: &str, detail: String| vec![FieldError { pointer: pointer.to_owned(), detail }];
         match self {
-            Self::Invalid(faults) => faults
-                .iter()
-                .map(|Fault { pointer, detail }| FieldError { pointer: pointer.clone(), detail: detail.clone() })
-                .collect(),
+            Self::Invalid(faults) => {
+                let told = faults.iter().take(MOST_FAULTS).cloned();
+                let rest = || Fault::new("", format!("there are more faults than these {MOST_FAULTS}"));
+                let rest = (faults.len() > MOST_FAULTS).then(rest);
+                told.chain(rest).map(|Fault { pointer, detail }| FieldError { pointer, detail }).collect()
+            }
             Self::TooManyRows { limit, pointer } => one(
                 pointer,
                 format!("would give more than the {limit} rows allowed; ask for fewer, for example with count"),
+            ),
+            Self::NoMemory { rows } => one(
+                "/output",
+                format!("gives {rows} rows, more than there is memory for; ask for fewer, for example with count"),
             ),
             Self::Flight(SimulationError::Singularity { .. }) => {
                 one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
@@ -255,6 +270,15 @@ impl From<Refusal> for ApiError {
             Refusal::Full => Self::Busy,
             Refusal::Share => Self::TooManyRequests { seconds: 1 },
         }
+    }
+}
+
+/// How many faults there are, as far as they were counted.
+fn counted(faults: &[Fault]) -> String {
+    match faults.len() {
+        1 => "1 fault".to_owned(),
+        count if count <= MOST_FAULTS => format!("{count} faults"),
+        _ => format!("more than {MOST_FAULTS} faults"),
     }
 }
 

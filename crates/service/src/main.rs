@@ -4,7 +4,6 @@ use std::io;
 use std::net::SocketAddr;
 use std::process::ExitCode;
 
-use clap::Parser;
 use reentry_service::allocator::tune;
 use reentry_service::cli::{Cli, Failure};
 use reentry_service::config::Config;
@@ -14,7 +13,7 @@ use reentry_service::telemetry::Log;
 use tokio::net::{TcpListener, TcpSocket};
 
 fn main() -> ExitCode {
-    let result = Cli::parse().command.run(run);
+    let result = Cli::read().command.run(run);
     result.as_ref().err().map_or(ExitCode::SUCCESS, Failure::end)
 }
 

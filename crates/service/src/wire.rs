@@ -5,6 +5,7 @@
 
 pub mod json;
 pub mod reader;
+pub mod shown;
 
 pub mod atmosphere;
 pub mod control;

@@ -1,7 +1,7 @@
 //! `reentry simulate` and its kin: from a file with one case or many to the answers.
 
 use std::fs;
-use std::io::{self, IsTerminal, Read};
+use std::io::{self, Read};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -13,12 +13,15 @@ use serde_json::Value;
 use serde_json::value::RawValue;
 
 use crate::answer;
-use crate::cli::{Failure, Output, failure, tell};
-use crate::compute;
+use crate::cli::in_order::in_order;
+use crate::cli::output::Output;
+use crate::cli::{Failure, failure, tell};
+use crate::config::{MOST_ROWS, processors, up_to};
 use crate::error::{ApiError, FieldError};
 use crate::format::Format;
 use crate::wire::json;
 use crate::wire::reader::Fault;
+use crate::wire::shown::{quoted, shortened};
 
 /// A file with cases, and what is to become of them.
 #[derive(Args, Debug)]
@@ -26,8 +29,8 @@ pub struct Cases {
     #[command(flatten)]
     states: States,
 
-    /// Rows that a trajectory may have, so that a slip of the pen does not fill the memory
-    #[arg(long, default_value_t = 1_000_000)]
+    /// Rows that a trajectory may have, at most 10000000; a row takes some kilobyte of memory
+    #[arg(long, default_value_t = 1_000_000, value_parser = up_to(MOST_ROWS))]
     row_limit: usize,
 }
 
@@ -37,7 +40,7 @@ pub struct States {
     /// The file with the JSON, one object or an array of them; - is standard input
     file: PathBuf,
 
-    /// The file to write, in place of standard output
+    /// The file to write, in place of standard output; it is written beside, and takes its place when it is whole
     #[arg(long, short)]
     output: Option<PathBuf>,
 }
@@ -96,7 +99,7 @@ struct Run<A> {
 impl<A: Answer> Run<A> {
     fn all(&self, states: &States) -> Result<(), Failure> {
         let text = states.read()?;
-        let mut output = Output::new(states.output.as_deref());
+        let output = Output::new(states.output.as_deref());
         match json::elements(&text) {
             Ok(Some(cases)) if cases.is_empty() => {
                 Err(self.failed(&ApiError::Invalid(vec![Fault::new("", "must have at least 1 case, got none")])))
@@ -106,89 +109,128 @@ impl<A: Answer> Run<A> {
                     "must be one case where KML is asked for, not a list: a document of XML is no line of a file";
                 Err(self.failed(&ApiError::Invalid(vec![Fault::new("", detail)])))
             }
-            Ok(Some(cases)) => self.many(&cases, &mut output),
-            Ok(None) => self.one(&text, &mut output),
+            Ok(Some(cases)) => self.many(&cases, output),
+            Ok(None) => self.one(&text, output),
             Err(error) => Err(self.failed(&error.into())),
         }
     }
 
-    fn one(&self, text: &[u8], output: &mut Output) -> Result<(), Failure> {
+    fn one(&self, text: &[u8], mut output: Output) -> Result<(), Failure> {
         let tree = json::parse(text).map_err(|error| self.failed(&error.into()))?;
         let answer = self.answer(tree, &AtomicBool::new(false)).map_err(|error| self.failed(&error))?;
-        output.write(&with_line_end(answer)).map(drop)
+        output.write(&with_line_end(answer))?;
+        output.finish()
     }
 
-    fn many(&self, cases: &[&RawValue], output: &mut Output) -> Result<(), Failure> {
-        let bar = progress(cases.len(), output);
-        let mut ending = Ok(());
+    fn many(&self, cases: &[&RawValue], mut output: Output) -> Result<(), Failure> {
+        let bar = progress(cases.len(), &output);
+        let mut failed = 0;
         let mut header = None;
-        let work = |case: &&RawValue, interrupt: &AtomicBool| {
-            let tree = json::parse(case.get().as_bytes()).map_err(ApiError::CaseNotJson)?;
-            self.answer(tree, interrupt)
+        let mut written = Ok(true);
+        let work = |index: usize, case: &&RawValue, interrupt: &AtomicBool| {
+            let tree = json::parse(case.get().as_bytes()).map_err(ApiError::CaseNotJson);
+            let answer = tree.and_then(|tree| self.answer(tree, interrupt));
+            let result = answer.map(with_line_end).map_err(|error| self.failed_case(index, case, &error));
+            let bytes = result.as_ref().map_or_else(FailedCase::bytes, Vec::len);
+            (result, bytes)
         };
-        compute::in_order(cases, work, |index, answer| {
+        in_order(cases, processors(), work, |index, result| {
             bar.inc(1);
-            let answer = match self.format {
-                Format::Csv => answer.and_then(|csv| table(index, &csv, &mut header)),
-                _ => answer,
+            let result = match self.format {
+                Format::Csv => result.and_then(|csv| {
+                    table(index, &csv, &mut header).map_err(|error| self.failed_case(index, cases[index], &error))
+                }),
+                _ => result,
             };
-            if let Err(error) = &answer {
-                let place = format!("{}: case {index}{}", self.place, name(cases[index]));
-                bar.suspend(|| tell(&told(&place, error)));
-                ending = Err(Failure::Case);
-            }
-            let lines = match (answer, self.format) {
-                (Ok(table), Format::Csv) => table,
-                (Err(_), Format::Csv) => return ControlFlow::Continue(()),
-                (Ok(line), _) => with_line_end(line),
-                (Err(error), _) => with_line_end(error.problem().to_json()),
-            };
-            match output.write(&lines) {
-                Ok(true) => ControlFlow::Continue(()),
-                Ok(false) => ControlFlow::Break(()),
-                Err(failure) => {
-                    ending = Err(failure);
-                    ControlFlow::Break(())
+            let lines = result.unwrap_or_else(|case| {
+                failed += 1;
+                if failed <= MOST_CASES_TOLD {
+                    bar.suspend(|| tell(&case.told));
                 }
+                if self.format == Format::Csv { Vec::new() } else { case.line }
+            });
+            if !lines.is_empty() {
+                written = output.write(&lines);
             }
+            if matches!(written, Ok(true)) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         bar.finish_and_clear();
-        ending
+        if failed > MOST_CASES_TOLD {
+            tell(&[format!("reentry: {}: {} more cases failed", self.place, failed - MOST_CASES_TOLD)]);
+        }
+        written?;
+        output.finish()?;
+        if failed == 0 { Ok(()) } else { Err(Failure::Case) }
     }
 
     fn answer(&self, tree: Value, interrupt: &dyn Interrupt) -> Result<Vec<u8>, ApiError> {
-        (self.answer)(tree, self.format, self.row_limit, interrupt).map(|answer| answer.body)
+        let mut body = (self.answer)(tree, self.format, self.row_limit, interrupt)?.body;
+        body.shrink_to_fit();
+        Ok(body)
     }
 
     fn failed(&self, error: &ApiError) -> Failure {
-        tell(&told(&self.place, error));
+        tell(&told(&self.place, error, usize::MAX));
         Failure::Case
+    }
+
+    fn failed_case(&self, index: usize, case: &RawValue, error: &ApiError) -> FailedCase {
+        let place = format!("{}: case {index}{}", self.place, name(case));
+        let told = told(&place, error, MOST_FAULTS_OF_A_CASE);
+        FailedCase { told, line: with_line_end(error.problem().to_json()) }
+    }
+}
+
+/// Cases of a list that are told on standard error, one by one, when they fail.
+const MOST_CASES_TOLD: usize = 100;
+
+/// Faults of a case of a list that are told there.
+const MOST_FAULTS_OF_A_CASE: usize = 10;
+
+/// Characters of a pointer that are told there: the names in it may be of any length.
+const MOST_OF_A_POINTER: usize = 200;
+
+/// What becomes of a case of a list that fails.
+struct FailedCase {
+    /// For people, on standard error.
+    told: Vec<String>,
+    /// In the place of the answer.
+    line: Vec<u8>,
+}
+
+impl FailedCase {
+    fn bytes(&self) -> usize {
+        self.line.len() + self.told.iter().map(String::len).sum::<usize>()
     }
 }
 
 /// A bar on standard error, where that is a terminal and the results go elsewhere.
 fn progress(count: usize, output: &Output) -> ProgressBar {
-    if matches!(output, Output::Standard) && io::stdout().is_terminal() {
+    if output.is_terminal() {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} cases, {eta} to go");
     ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// A problem document for people: its title and detail, and a line a fault.
-fn told(place: &str, error: &ApiError) -> String {
+/// A problem document for people: its title and detail, and a line a fault, but not more than so many.
+fn told(place: &str, error: &ApiError, most: usize) -> Vec<String> {
     let problem = error.problem();
-    let fault = |FieldError { pointer, detail }: &FieldError| {
-        if pointer.is_empty() { format!("  {detail}\n") } else { format!("  {pointer}: {detail}\n") }
-    };
-    let faults: String = problem.errors.iter().map(fault).collect();
-    format!("reentry: {place}: {}: {}\n{faults}", problem.title, problem.detail)
+    let mut lines = vec![format!("reentry: {place}: {}: {}", problem.title, problem.detail)];
+    lines.extend(problem.errors.iter().take(most).map(|FieldError { pointer, detail }| {
+        let pointer = shortened(pointer, MOST_OF_A_POINTER);
+        if pointer.is_empty() { format!("  {detail}") } else { format!("  {pointer}: {detail}") }
+    }));
+    if problem.errors.len() > most {
+        lines.push("  and more, which are told where the case stands alone".to_owned());
+    }
+    lines
 }
 
 /// The name of a case, if it has one, quoted.
 fn name(case: &RawValue) -> String {
     let tree = json::parse(case.get().as_bytes()).unwrap_or_default();
-    tree["name"].as_str().map_or_else(String::new, |name| format!(" {name:?}"))
+    tree["name"].as_str().map_or_else(String::new, |name| format!(" {}", quoted(name)))
 }
 
 pub(super) fn with_line_end(mut text: Vec<u8>) -> Vec<u8> {
@@ -246,8 +288,11 @@ mod tests {
     #[test]
     fn a_problem_is_told_with_a_line_a_fault() {
         let faults = vec![Fault::new("/vehicle/mass", "is required"), Fault::new("", "must be an object, got null")];
-        let expected = "reentry: case.json: Not a valid case: the request has 2 faults\n  \
-                        /vehicle/mass: is required\n  must be an object, got null\n";
-        assert_eq!(told("case.json", &ApiError::Invalid(faults)), expected);
+        let error = ApiError::Invalid(faults);
+        let head = "reentry: case.json: Not a valid case: the request has 2 faults";
+        let all = [head, "  /vehicle/mass: is required", "  must be an object, got null"];
+        assert_eq!(told("case.json", &error, 2), all);
+        assert_eq!(told("case.json", &error, 1)[..2], all[..2]);
+        assert_eq!(told("case.json", &error, 1).len(), 3);
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use clap::{Args, ValueEnum};
 
 use crate::cli::cases::with_line_end;
-use crate::cli::{Failure, Output, tell};
+use crate::cli::{Failure, print, tell};
 use crate::error::ApiError;
 use crate::validation::Validation;
 
@@ -41,15 +41,14 @@ impl Validate {
             Format::Json => with_line_end(validation.to_json().map_err(io::Error::from)?),
             Format::Markdown => validation.to_markdown().into_bytes(),
         };
-        Output::Standard.write(&text)?;
-        for miss in validation.misses() {
-            tell(&format!("reentry: missed: {}\n", miss.told()));
-        }
+        print(&text)?;
+        let misses: Vec<_> = validation.misses().map(|miss| format!("reentry: missed: {}", miss.told())).collect();
+        tell(&misses);
         if validation.passed { Ok(()) } else { Err(Failure::Case) }
     }
 }
 
 fn failed(error: &ApiError) -> Failure {
-    tell(&format!("reentry: {error}\n"));
+    tell(&[format!("reentry: {error}")]);
     Failure::Case
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::oneshot::{Receiver, Sender, channel};
 
 /// From here on a job is long, by the processor time that it has taken. Nearly all flights take less.
-pub(super) const LONG: Duration = Duration::from_millis(50);
+pub(super) const LONG: Duration = Duration::from_millis(100);
 
 /// What short jobs may compute beyond the half that is theirs, while long ones wait.
 const LEAD: Duration = Duration::from_millis(5);

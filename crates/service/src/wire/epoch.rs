@@ -14,7 +14,7 @@ use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, Type};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
-use super::json::shown;
+use super::shown::shown;
 use calendar::{Date, days_since_2000};
 
 /// The seconds since the inertial and the planet-fixed frame were aligned; requests may write them as `"HH:MM:SS.s"`.

@@ -18,8 +18,8 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
-use super::json::{shortened, shown};
-use super::reader::{Fault, Object};
+use super::reader::{Fault, MOST_FAULTS, Object};
+use super::shown::{quoted, shown};
 use super::vehicle::{Aerodynamics, Vehicle};
 
 /// The greatest number of events, and of conditions that end a flight.
@@ -340,9 +340,12 @@ impl Event {
             for (place, name) in
                 then.release.iter().enumerate().filter(|(_, name)| !deployed.contains_key(name.as_str()))
             {
-                let got = shortened(name);
-                let detail = format!("must be the name of a parachute that an event deploys, got {got:?}");
+                let got = quoted(name);
+                let detail = format!("must be the name of a parachute that an event deploys, got {got}");
                 faults.push(Fault::new(format!("/events/{index}/then/release/{place}"), detail));
+                if faults.len() > MOST_FAULTS {
+                    return faults;
+                }
             }
         }
         faults

@@ -6,6 +6,8 @@ use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visit
 use serde_json::value::RawValue;
 use serde_json::{Map, Number, Value};
 
+use super::shown::quoted;
+
 /// The tree of a JSON text. A key that occurs twice in an object is an error, as is a number that no `f64` holds.
 ///
 /// # Errors
@@ -24,25 +26,6 @@ pub fn parse(text: &[u8]) -> Result<Value, serde_json::Error> {
 pub fn elements(text: &[u8]) -> Result<Option<Vec<&RawValue>>, serde_json::Error> {
     let whole: &RawValue = serde_json::from_slice(text)?;
     if whole.get().starts_with('[') { serde_json::from_str(whole.get()).map(Some) } else { Ok(None) }
-}
-
-/// The beginning of a value, for a message.
-pub(super) fn shown(value: &Value) -> String {
-    match value {
-        Value::String(string) => format!("{:?}", shortened(string)),
-        Value::Array(_) => "an array".to_owned(),
-        Value::Object(_) => "an object".to_owned(),
-        Value::Null | Value::Bool(_) | Value::Number(_) => value.to_string(),
-    }
-}
-
-/// The beginning of a string, for a message.
-pub(super) fn shortened(string: &str) -> String {
-    let mut start: String = string.chars().take(40).collect();
-    if start.len() < string.len() {
-        start.push('…');
-    }
-    start
 }
 
 /// Builds a [`Value`] and refuses duplicate keys, which [`Value`]'s own reader would drop.
@@ -99,7 +82,7 @@ impl<'de> Visitor<'de> for Tree {
         let mut map = Map::new();
         while let Some(key) = entries.next_key::<String>()? {
             if map.contains_key(&key) {
-                return Err(de::Error::custom(format!("duplicate key {:?}", shortened(&key))));
+                return Err(de::Error::custom(format!("duplicate key {}", quoted(&key))));
             }
             let value = entries.next_value_seed(Self)?;
             map.insert(key, value);

@@ -10,7 +10,7 @@ use serde_json::{Map, Number, Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::json::{shortened, shown};
+use super::shown::{quoted, shown};
 
 /// A number for all entries of a table, or one for each.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -61,8 +61,8 @@ pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut Object) -> Option<T>) ->
     }
 }
 
-/// Faults that are reported one by one; a list of numbers can have half a million of them.
-const MOST_FAULTS: usize = 1000;
+/// Faults of a request that are told; a list of numbers can have half a million of them. One more is noted, which says that there are more.
+pub const MOST_FAULTS: usize = 100;
 
 /// The greatest number of entries of a list in a model: a table, a schedule, layers.
 pub const MOST_ENTRIES: usize = 10_000;
@@ -110,11 +110,14 @@ fn object<T>(
 
 impl Context {
     fn note(&mut self, pointer: String, detail: String) {
-        if self.faults.len() < MOST_FAULTS {
-            self.faults.push(Fault::new(pointer, detail));
-        } else if self.faults.len() == MOST_FAULTS {
-            self.faults.push(Fault::new("", format!("there are more faults than these {MOST_FAULTS}")));
+        if !self.has_enough() {
+            self.faults.push(Fault { pointer, detail });
         }
+    }
+
+    /// Whether further faults need not be looked for.
+    fn has_enough(&self) -> bool {
+        self.faults.len() > MOST_FAULTS
     }
 }
 
@@ -280,6 +283,9 @@ impl Object<'_> {
                     Ok(number) => numbers.push(number),
                     Err(detail) => faults.push((format!("{name}/{index}/{column}"), detail)),
                 }
+                if faults.len() > MOST_FAULTS {
+                    break;
+                }
             }
             matrix.push(numbers);
         }
@@ -297,7 +303,7 @@ impl Object<'_> {
             let given = element.as_str().ok_or_else(|| kind_of(element).to_owned());
             let chosen = given.and_then(|given| {
                 let known = choices.iter().position(|(name, _)| *name == given);
-                known.ok_or_else(|| format!("{:?}", shortened(given)))
+                known.ok_or_else(|| quoted(given))
             });
             chosen.map_err(|got| format!("must be one of {names}, got {got}"))
         };
@@ -364,13 +370,19 @@ impl Object<'_> {
         if let Some(detail) = wrong_count(count, counts) {
             return self.check(name, Err(detail), Ok);
         }
-        let elements: Vec<_> = elements.iter().map(read).collect();
+        let mut faults = Vec::new();
         let mut list = Vec::with_capacity(count);
-        for (index, element) in elements.into_iter().enumerate() {
-            match element {
+        for (index, element) in elements.iter().enumerate() {
+            match read(element) {
                 Ok(element) => list.push(element),
-                Err(detail) => self.fault_of(&format!("{name}/{index}"), detail),
+                Err(detail) => faults.push((index, detail)),
             }
+            if faults.len() > MOST_FAULTS {
+                break;
+            }
+        }
+        for (index, detail) in faults {
+            self.fault_of(&format!("{name}/{index}"), detail);
         }
         (list.len() == count).then_some(list)
     }
@@ -412,6 +424,9 @@ impl Object<'_> {
                 let detail = format!("must be greater than the {before} before it, got {got}");
                 self.fault_of(&format!("{name}/{}{field}", index + 1), detail);
                 sound = false;
+            }
+            if self.context.has_enough() {
+                break;
             }
         }
         sound
@@ -460,7 +475,7 @@ impl Object<'_> {
         };
         let string = value.as_str();
         let chosen = string.and_then(|given| choices.iter().find(|(name, _)| *name == given)).map(|(_, value)| *value);
-        let got = string.map_or_else(|| kind_of(value).to_owned(), |given| format!("{:?}", shortened(given)));
+        let got = string.map_or_else(|| kind_of(value).to_owned(), quoted);
         self.known.push(name);
         self.kind_unknown |= chosen.is_none() && (name == "type" || name == "model");
         self.check(name, chosen.ok_or(format!("{expected}, got {got}")), Ok)
@@ -501,8 +516,7 @@ impl Object<'_> {
             Value::String(given) if given == word => Some(meaning),
             Value::Object(_) => self.object(name, object),
             other => {
-                let got =
-                    other.as_str().map_or_else(|| kind_of(other).to_owned(), |given| format!("{:?}", shortened(given)));
+                let got = other.as_str().map_or_else(|| kind_of(other).to_owned(), quoted);
                 self.check(name, Err(format!("must be {word:?} or an object, got {got}")), Ok)
             }
         }
@@ -608,18 +622,21 @@ impl Object<'_> {
         if self.kind_unknown {
             return;
         }
-        let unknown: Vec<_> = self.map.keys().filter(|name| !self.known.contains(&name.as_str())).collect();
         let mut known: Vec<_> = Vec::new();
         for name in &self.known {
             if !known.contains(name) {
                 known.push(*name);
             }
         }
-        let known = known.join(", ");
-        for name in unknown {
+        // The first is told the fields that there are, for all.
+        let mut fields = format!("; the fields are {}", known.join(", "));
+        for name in self.map.keys().filter(|name| !known.contains(&name.as_str())) {
             let escaped = name.replace('~', "~0").replace('/', "~1");
-            self.context
-                .note(format!("{}/{escaped}", self.pointer), format!("is not a field here; the fields are {known}"));
+            let detail = format!("is not a field here{}", std::mem::take(&mut fields));
+            self.context.note(format!("{}/{escaped}", self.pointer), detail);
+            if self.context.has_enough() {
+                break;
+            }
         }
     }
 }
