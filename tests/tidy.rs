@@ -114,7 +114,7 @@ fn integration_has_not_heard_of_flight() {
     }
 }
 
-/// Angles are converted in `wire` alone, jobs are spawned in `compute` alone, and `error` alone knows which failure has which status.
+/// Angles are converted in `wire` alone, jobs are begun in `compute` alone, and `error` alone knows which failure has which status.
 #[test]
 fn each_duty_has_one_place() {
     for (file, text) in sources("crates", "rs") {
@@ -125,7 +125,7 @@ fn each_duty_has_one_place() {
         };
         only("to_degrees()", &["src/wire", "tests"]);
         only("to_radians()", &["src/wire", "tests"]);
-        only("spawn_blocking", &["src/compute.rs"]);
+        only("spawn_blocking", &["src/compute/turns.rs"]);
         only("UNPROCESSABLE_ENTITY", &["src/error.rs"]);
         only("std::env", &["src/config.rs", "src/allocator.rs", "build.rs"]);
     }

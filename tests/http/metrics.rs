@@ -138,9 +138,9 @@ async fn jobs_of_clients_that_have_gone_are_counted() {
     free_again(|| async { count("reentry_jobs_queued") == 1.0 }).await;
     waiting.abort();
     running.abort();
-    free_again(|| async { count("reentry_jobs_queued") == 0.0 }).await;
+    assert!(waiting.await.is_err() && running.await.is_err());
     drop(free);
-    free_again(|| async { count("reentry_jobs_running") == 0.0 }).await;
+    free_again(|| async { count("reentry_jobs_queued") == 0.0 && count("reentry_jobs_running") == 0.0 }).await;
     assert_eq!(count("reentry_cancellations_total{route=\"/simulate\",cause=\"disconnect\"}"), 1.0);
     assert_eq!(count("reentry_cancellations_total{route=\"/convert\",cause=\"disconnect\"}"), 1.0);
 }

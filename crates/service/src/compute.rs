@@ -6,6 +6,7 @@
 mod slots;
 mod turns;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -16,7 +17,7 @@ use reentry::Interrupt;
 use rustix::time::{ClockId, clock_gettime};
 use tokio::runtime::{Builder, Handle, Runtime};
 use tokio::sync::mpsc::error::TrySendError;
-use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore, mpsc};
+use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore, mpsc, oneshot};
 use tokio::time::{Instant, timeout};
 use tracing::{Instrument, Span};
 
@@ -198,55 +199,49 @@ impl Compute {
         T: Send + 'static,
         F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
     {
-        let late = || ApiError::DeadlineExceeded { seconds: self.deadline.min(left).as_secs_f64() };
-        let asked = Instant::now();
-        let mut queued = Queued::new(route, &self.metrics);
-        let Ok(turn) = timeout(left, pool.turns.ask(Place::Short)).await else {
-            queued.cause = "deadline";
-            return Err(late());
-        };
-        queued.begun(asked.elapsed());
-        let left = left.saturating_sub(asked.elapsed()).min(self.deadline);
         let caller = Caller(Arc::default());
+        let (done, mut result) = oneshot::channel();
         let task = Task {
             call: Arc::clone(&caller.0),
             route,
             client,
             turns: Arc::clone(&pool.turns),
             suspended: Arc::clone(&pool.suspended),
-            state: Mutex::new(State {
-                turn: turn.ok(),
-                since: Instant::now(),
-                look: Instant::now(),
-                begin: None,
-                is_long: false,
-                place,
-                was_suspended: false,
-                permit: Some(self.memory.answers.permit(client)),
-                was_refused: false,
-                refusal: None,
-            }),
+            asked: Instant::now(),
+            state: Mutex::new(State::new(place, self.memory.answers.permit(client))),
             metrics: Arc::clone(&self.metrics),
             rate_limit: self.rate_limit.clone(),
         };
         let memory = self.memory.clone();
-        let handle = pool.threads()?.spawn_blocking(move || {
-            task.lock().begin = Some(processor_time());
-            let result = memory.answers.admit(client).map_err(ApiError::from).and_then(|()| job(&task));
-            // A job that was ended does not know why.
-            let refusal = task.lock().refusal.take();
-            refusal.map_or(result, Err)
-        });
-        match timeout(left, handle).await {
-            Ok(Ok(result)) => result,
-            Ok(Err(panic)) => {
-                tracing::error!(%panic, "a job panicked");
-                Err(ApiError::Internal)
+        self.metrics.job_queued();
+        pool.turns.submit(Box::new(move |turn| {
+            task.begin(turn);
+            let run =
+                AssertUnwindSafe(|| memory.answers.admit(client).map_err(ApiError::from).and_then(|()| job(&task)));
+            let result = if task.is_over() { Err(ApiError::Interrupted) } else { task.outcome(catch_unwind(run)) };
+            let turn = task.lock().turn.take();
+            // It is counted before it is known to be over.
+            drop(task);
+            // An error: nobody waits.
+            let _ = done.send(result);
+            turn
+        }));
+        let late = |allowed: Duration| {
+            caller.0.is_late.store(true, Ordering::Relaxed);
+            ApiError::DeadlineExceeded { seconds: allowed.as_secs_f64() }
+        };
+        let allowed = left.min(self.deadline);
+        if left > self.deadline {
+            // A case of a batch, whose time begins when it does.
+            tokio::select! {
+                biased;
+                over = &mut result => return over.map_err(|_| ApiError::Internal)?,
+                begun = timeout(left, caller.0.begun.notified()) => begun.map_err(|_| late(left))?,
             }
-            Err(_) => {
-                caller.0.is_late.store(true, Ordering::Relaxed);
-                Err(late())
-            }
+        }
+        match timeout(allowed, result).await {
+            Ok(result) => result.map_err(|_| ApiError::Internal)?,
+            Err(_) => Err(late(allowed)),
         }
     }
 
@@ -272,11 +267,11 @@ impl Pool {
         let suspended = suspended.min(MOST_SUSPENDED);
         let threads =
             Builder::new_current_thread().max_blocking_threads(workers + suspended).thread_name(name).build()?;
-        Ok(Self { threads: Some(threads), turns: Turns::new(workers), suspended: Arc::new(Semaphore::new(suspended)) })
-    }
-
-    fn threads(&self) -> Result<&Runtime, ApiError> {
-        self.threads.as_ref().ok_or(ApiError::Internal)
+        Ok(Self {
+            turns: Turns::new(workers, threads.handle().clone()),
+            threads: Some(threads),
+            suspended: Arc::new(Semaphore::new(suspended)),
+        })
     }
 }
 
@@ -291,38 +286,11 @@ impl Drop for Pool {
     }
 }
 
-/// A job that waits for its first turn; counted as cancelled when it is dropped before it has begun.
-struct Queued<'a> {
-    route: &'static str,
-    metrics: &'a Metrics,
-    has_begun: bool,
-    cause: &'static str,
-}
-
-impl<'a> Queued<'a> {
-    fn new(route: &'static str, metrics: &'a Metrics) -> Self {
-        metrics.job_queued();
-        Self { route, metrics, has_begun: false, cause: "disconnect" }
-    }
-
-    fn begun(&mut self, waited: Duration) {
-        self.metrics.job_begun(self.route, waited);
-        self.has_begun = true;
-    }
-}
-
-impl Drop for Queued<'_> {
-    fn drop(&mut self) {
-        if !self.has_begun {
-            self.metrics.job_left_queue();
-            self.metrics.job_cancelled(self.route, self.cause);
-        }
-    }
-}
-
 /// What a job and the one who waits for it have in common.
 #[derive(Debug, Default)]
 struct Call {
+    /// Tells that the job has begun.
+    begun: Notify,
     /// Raised when nobody waits any more.
     interrupt: AtomicBool,
     /// Tells a suspended job so.
@@ -351,6 +319,8 @@ pub struct Task {
     client: Client,
     turns: Arc<Turns>,
     suspended: Arc<Semaphore>,
+    /// When it was asked for.
+    asked: Instant,
     state: Mutex<State>,
     metrics: Arc<Metrics>,
     rate_limit: Option<Arc<RateLimit>>,
@@ -379,6 +349,22 @@ struct State {
 }
 
 impl State {
+    fn new(place: Option<OwnedSemaphorePermit>, permit: Permit) -> Self {
+        let now = Instant::now();
+        Self {
+            turn: None,
+            since: now,
+            look: now,
+            begin: None,
+            is_long: false,
+            place,
+            was_suspended: false,
+            permit: Some(permit),
+            was_refused: false,
+            refusal: None,
+        }
+    }
+
     /// What the job has computed, asked on its own thread.
     fn computed(&self) -> Duration {
         self.begin.map_or(Duration::ZERO, |begin| processor_time().saturating_sub(begin))
@@ -393,6 +379,27 @@ impl Task {
             Some(permit) => permit.keep(bytes),
             None => bytes.into(),
         }
+    }
+
+    /// Begins, on the thread of a turn.
+    fn begin(&self, turn: Turn) {
+        self.metrics.job_begun(self.route, self.asked.elapsed());
+        self.call.begun.notify_one();
+        let mut state = self.lock();
+        state.turn = Some(turn);
+        state.since = Instant::now();
+        state.begin = Some(processor_time());
+    }
+
+    /// What came of the job: a job that was ended does not know why.
+    fn outcome<T>(&self, result: thread::Result<Result<T, ApiError>>) -> Result<T, ApiError> {
+        let refusal = self.lock().refusal.take();
+        let result = result.unwrap_or_else(|_| {
+            // The panic itself has its line.
+            tracing::error!("a job panicked");
+            Err(ApiError::Internal)
+        });
+        refusal.map_or(result, Err)
     }
 
     fn is_over(&self) -> bool {
@@ -416,7 +423,7 @@ impl Task {
             state.is_long = state.computed() >= LONG;
         }
         if state.is_long && self.turns.are_due(now - state.since) {
-            let place = if was_long { Place::LongAgain } else { Place::Long };
+            let place = if was_long { Place::First } else { Place::Last };
             self.suspend(&mut state, place, Duration::ZERO);
         }
     }
@@ -480,7 +487,7 @@ impl Interrupt for Task {
             } else if permit.try_reserve(bytes).is_ok() {
                 return true;
             } else {
-                self.suspend(&mut state, Place::LongAgain, PAUSE);
+                self.suspend(&mut state, Place::First, PAUSE);
             }
         }
         false
@@ -496,6 +503,10 @@ impl Drop for Task {
         }
         // It is dropped by the thread on which it ran.
         let computed = state.computed();
+        if state.begin.is_none() {
+            // The service ends, and with it its threads.
+            return;
+        }
         self.metrics.job_over(self.route, computed);
         if let Some(limit) = &self.rate_limit {
             limit.charge(self.client, computed);

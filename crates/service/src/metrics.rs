@@ -226,14 +226,10 @@ impl Metrics {
 
     /// A worker has taken a job that waited.
     pub fn job_begun(&self, route: &'static str, waited: Duration) {
-        self.queued.dec();
+        // In this order: a job is never in neither.
         self.running.inc();
-        self.waits.get_or_create(&Route { route: route.to_owned() }).observe(waited.as_secs_f64());
-    }
-
-    /// A job waits no more and was never begun.
-    pub fn job_left_queue(&self) {
         self.queued.dec();
+        self.waits.get_or_create(&Route { route: route.to_owned() }).observe(waited.as_secs_f64());
     }
 
     /// A job has given way to others.
