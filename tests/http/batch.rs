@@ -202,7 +202,7 @@ fn compute(workers: usize, batches: usize, deadline: Duration) -> Arc<Compute> {
     pool(Config { workers, queue: 8, batches, deadline, ..Config::default() })
 }
 
-type Job = Box<dyn FnOnce(&Task) -> Result<usize, ApiError> + Send>;
+type Job = Box<dyn FnMut(&Task) -> Result<usize, ApiError> + Send>;
 
 fn endless_job() -> Job {
     Box::new(|task| endless(task).map(|()| 0))

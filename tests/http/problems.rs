@@ -1,14 +1,15 @@
 //! One problem document of every type, to the letter.
 
 use std::io;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
-use axum::http::{Method, Request, header};
+use axum::http::{Extensions, HeaderMap, Method, Request, header};
 use http_body_util::{BodyExt, Full, Limited};
 use reentry::Interrupt;
-use reentry_service::client::Client;
+use reentry_service::client::{Client, Peer, client};
 use reentry_service::compute::Task;
 use reentry_service::config::Config;
 use reentry_service::error::ApiError;
@@ -356,4 +357,56 @@ async fn a_job_whose_client_goes_away_is_given_up() {
     client.abort();
     free_again(|| async { compute.has_room() }).await;
     assert!(compute.run("/simulate", Client::default(), |_| Ok(())).await.is_ok());
+}
+
+#[tokio::test]
+async fn a_job_without_room_for_its_answer_begins_anew_when_there_is() {
+    let compute = pool(Config { workers: 2, deadline: Duration::from_mins(5), ..Config::default() });
+    let much = Config::default().memory / 2;
+    let (free, freed) = mpsc::channel::<()>();
+    let (holds, held) = mpsc::channel();
+    let client = |number: u8| {
+        let mut extensions = Extensions::new();
+        extensions.insert(Peer(([203, 0, 113, number], 1234).into()));
+        client(&extensions, &HeaderMap::new(), &Config::default())
+    };
+    let first = {
+        let compute = Arc::clone(&compute);
+        let job = move |task: &Task| {
+            let has_room = task.may_hold(much);
+            holds.send(()).map_err(|_| ApiError::Internal)?;
+            // An error: it is told to go on by dropping the other end.
+            let _ = freed.recv();
+            Ok(has_room)
+        };
+        tokio::spawn(async move { compute.run("/simulate", client(1), job).await })
+    };
+    let begun = Arc::new(AtomicUsize::new(0));
+    let second = {
+        let (compute, begun) = (Arc::clone(&compute), Arc::clone(&begun));
+        let job = move |task: &Task| {
+            begun.fetch_add(1, Ordering::SeqCst);
+            // Small things have room all the while.
+            assert!(task.may_hold(much / 100));
+            if task.may_hold(much) { Ok(task.may_hold(2 * much / 3)) } else { Err(ApiError::Interrupted) }
+        };
+        while held.try_recv().is_err() {
+            tokio::task::yield_now().await;
+        }
+        tokio::spawn(async move { compute.run("/simulate", client(2), job).await })
+    };
+    while begun.load(Ordering::SeqCst) == 0 {
+        tokio::task::yield_now().await;
+    }
+    tokio::time::sleep(Duration::from_millis(50)).await;
+    // It waits, and nobody else does.
+    assert!(!second.is_finished());
+    assert!(compute.run("/simulate", client(2), move |task| Ok(task.may_hold(much / 100))).await.unwrap());
+    drop(free);
+    assert!(first.await.unwrap().unwrap());
+    assert!(second.await.unwrap().unwrap());
+    assert_eq!(begun.load(Ordering::SeqCst), 2);
+    // What never has room is refused.
+    let refused = compute.run("/simulate", client(3), move |task| Ok(task.may_hold(4 * much))).await;
+    assert!(matches!(refused, Err(ApiError::TooLarge { .. })), "{refused:?}");
 }

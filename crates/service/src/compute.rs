@@ -73,7 +73,7 @@ impl Compute {
         })
     }
 
-    /// Runs a job of a route for a client. It is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
+    /// Runs a job of a route for a client, and runs it again where it found no room in memory. It is to stop soon after its flag is raised: at the deadline, or when the caller is dropped.
     ///
     /// # Errors
     /// The job's own; [`ApiError::Busy`] at once when all places are taken, or when the memory is full; [`ApiError::TooManyRequests`] when
@@ -81,7 +81,7 @@ impl Compute {
     pub async fn run<T, F>(&self, route: &'static str, client: Client, job: F) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
+        F: FnMut(&Task) -> Result<T, ApiError> + Send + 'static,
     {
         let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| ApiError::Busy)?;
         self.work(&self.singles, (route, client), Some(place), job, self.deadline).await
@@ -105,7 +105,7 @@ impl Compute {
     ) -> Result<mpsc::Receiver<Result<T, ApiError>>, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
+        F: FnMut(&Task) -> Result<T, ApiError> + Send + 'static,
     {
         let mut slot = Some(self.slots.try_take(client)?);
         let start = Instant::now();
@@ -161,7 +161,7 @@ impl Compute {
     ) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
+        F: FnMut(&Task) -> Result<T, ApiError> + Send + 'static,
     {
         let start = Instant::now();
         if slot.is_none() && !left.is_zero() {
@@ -178,7 +178,7 @@ impl Compute {
     pub async fn share<T, F>(&self, route: &'static str, client: Client, job: F, left: Duration) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
+        F: FnMut(&Task) -> Result<T, ApiError> + Send + 'static,
     {
         if left.is_zero() {
             return Err(ApiError::DeadlineExceeded { seconds: 0.0 });
@@ -192,12 +192,12 @@ impl Compute {
         pool: &Pool,
         (route, client): (&'static str, Client),
         place: Option<OwnedSemaphorePermit>,
-        job: F,
+        mut job: F,
         left: Duration,
     ) -> Result<T, ApiError>
     where
         T: Send + 'static,
-        F: FnOnce(&Task) -> Result<T, ApiError> + Send + 'static,
+        F: FnMut(&Task) -> Result<T, ApiError> + Send + 'static,
     {
         let caller = Caller(Arc::default());
         let (done, mut result) = oneshot::channel();
@@ -216,9 +216,20 @@ impl Compute {
         self.metrics.job_queued();
         pool.turns.submit(Box::new(move |turn| {
             task.begin(turn);
-            let run =
-                AssertUnwindSafe(|| memory.answers.admit(client).map_err(ApiError::from).and_then(|()| job(&task)));
-            let result = if task.is_over() { Err(ApiError::Interrupted) } else { task.outcome(catch_unwind(run)) };
+            if let Err(refusal) = memory.answers.admit(client) {
+                task.refuse(&mut task.lock(), refusal.into());
+            }
+            let mut run = || job(&task);
+            let result = loop {
+                let result = if task.is_over() {
+                    Ok(Err(ApiError::Interrupted))
+                } else {
+                    catch_unwind(AssertUnwindSafe(&mut run))
+                };
+                if !task.waited_for_room() {
+                    break task.outcome(result);
+                }
+            };
             let turn = task.lock().turn.take();
             // It is counted before it is known to be over.
             drop(task);
@@ -311,7 +322,7 @@ impl Drop for Caller {
 
 /// A job that runs, and looks at its flag: there it gives way to short ones once it is long, and goes on when its turn comes again.
 ///
-/// It holds memory for its answer, and where there is none, it is suspended until there is.
+/// It holds memory for its answer, and where there is none, it gives back what it holds, and begins anew when there is.
 #[derive(Debug)]
 pub struct Task {
     call: Arc<Call>,
@@ -342,6 +353,10 @@ struct State {
     was_suspended: bool,
     /// None once its answer is there.
     permit: Option<Permit>,
+    /// The bytes that it may hold.
+    reserved: usize,
+    /// The bytes for which there was no room.
+    wanted: Option<usize>,
     /// Whether it was ended for another reason than that nobody waits.
     was_refused: bool,
     /// That reason, until it is told.
@@ -360,8 +375,20 @@ impl State {
             place,
             was_suspended: false,
             permit: Some(permit),
+            reserved: 0,
+            wanted: None,
             was_refused: false,
             refusal: None,
+        }
+    }
+
+    /// Holds so many bytes, or as many as one may, if there is room for them.
+    fn reserve(&mut self, bytes: usize) {
+        if let Some(permit) = &mut self.permit {
+            let bytes = bytes.min(permit.largest());
+            if permit.try_reserve(bytes).is_ok() {
+                self.reserved = bytes;
+            }
         }
     }
 
@@ -402,6 +429,20 @@ impl Task {
         refusal.map_or(result, Err)
     }
 
+    /// Where the job found no room in memory, waits until there is room for twice as much as it wanted; whether the job is then to begin anew.
+    ///
+    /// Meanwhile it holds nothing: jobs that held something while they waited for more would wait for each other.
+    fn waited_for_room(&self) -> bool {
+        let mut state = self.lock();
+        let Some(wanted) = state.wanted.take() else { return false };
+        state.reserve(0);
+        while !self.is_over() && state.reserved == 0 {
+            self.suspend(&mut state, Place::Last, PAUSE);
+            state.reserve(2 * wanted);
+        }
+        !self.is_over()
+    }
+
     fn is_over(&self) -> bool {
         self.call.interrupt.load(Ordering::Relaxed)
     }
@@ -428,7 +469,7 @@ impl Task {
         }
     }
 
-    /// Suspends the job for a pause at least, and until its turn comes.
+    /// Suspends the job for a pause at least, and until its turn comes again.
     fn suspend(&self, state: &mut State, place: Place, pause: Duration) {
         if !state.was_suspended {
             let Ok(place) = Arc::clone(&self.suspended).try_acquire_owned() else {
@@ -479,18 +520,22 @@ impl Interrupt for Task {
 
     fn may_hold(&self, bytes: usize) -> bool {
         let mut state = self.lock();
-        while !self.is_over() {
-            let Some(permit) = &mut state.permit else { return true };
-            let limit = permit.largest();
-            if bytes > limit {
-                self.refuse(&mut state, ApiError::TooLarge { limit });
-            } else if permit.try_reserve(bytes).is_ok() {
-                return true;
-            } else {
-                self.suspend(&mut state, Place::First, PAUSE);
-            }
+        if bytes <= state.reserved {
+            return true;
         }
-        false
+        let Some(permit) = &mut state.permit else { return true };
+        let limit = permit.largest();
+        if bytes > limit {
+            self.refuse(&mut state, ApiError::TooLarge { limit });
+            return false;
+        }
+        let has_room = permit.try_reserve(bytes).is_ok();
+        if has_room {
+            state.reserved = bytes;
+        } else {
+            state.wanted = Some(bytes);
+        }
+        has_room
     }
 }
 

@@ -13,7 +13,7 @@ use tokio::time::{Instant, timeout, timeout_at};
 use crate::client::Client;
 use crate::coding::{Coding, InflateError, inflate};
 use crate::error::ApiError;
-use crate::memory::{Budget, HURRY, Permit, SLOWEST};
+use crate::memory::{Budget, HURRY, SLOWEST};
 use crate::middleware::route;
 use crate::state::AppState;
 use crate::wire::json;
@@ -24,8 +24,9 @@ pub struct Payload {
     bytes: Bytes,
     coding: Coding,
     limit: usize,
-    /// Where the text counts that is made of another coding.
-    permit: Permit,
+    /// Where the text counts that is made of another coding, and whose it is.
+    budget: Arc<Budget>,
+    client: Client,
 }
 
 impl Payload {
@@ -33,7 +34,7 @@ impl Payload {
     ///
     /// # Errors
     /// As [`Payload::text`], and when the text is not JSON.
-    pub fn json(self, interrupt: &dyn Interrupt) -> Result<Value, ApiError> {
+    pub fn json(&self, interrupt: &dyn Interrupt) -> Result<Value, ApiError> {
         Ok(json::parse(&self.text(interrupt)?)?)
     }
 
@@ -41,12 +42,14 @@ impl Payload {
     ///
     /// # Errors
     /// When the body is not what its coding says, or when its text is too long or has no room in memory.
-    pub fn text(self, interrupt: &dyn Interrupt) -> Result<Bytes, ApiError> {
-        let Self { bytes, coding, limit, mut permit } = self;
+    pub fn text(&self, interrupt: &dyn Interrupt) -> Result<Bytes, ApiError> {
+        let Self { bytes, coding, limit, budget, client } = self;
+        let (coding, limit) = (*coding, *limit);
         if coding == Coding::Identity {
-            return Ok(bytes);
+            return Ok(bytes.clone());
         }
-        let text = inflate(coding, &bytes, |length| {
+        let mut permit = budget.permit(*client);
+        let text = inflate(coding, bytes, |length| {
             if interrupt.is_raised() {
                 Err(ApiError::Interrupted)
             } else if length > limit {
@@ -105,7 +108,7 @@ async fn read(request: Request, state: &AppState, limit: usize, budget: &Arc<Bud
     let bytes = timeout(deadline, received).await;
     let bytes = bytes.map_err(|_| ApiError::BodyTimeout { seconds: deadline.as_secs_f64() })??;
     state.metrics.received(&route, bytes.len());
-    Ok(Payload { bytes, coding, limit, permit: budget.permit(client) })
+    Ok(Payload { bytes, coding, limit, budget: Arc::clone(budget), client })
 }
 
 /// The coding in which a request with these headers has its body.

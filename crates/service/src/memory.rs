@@ -148,12 +148,13 @@ impl Permit {
         self.hold_within(self.budget.limit, bytes)
     }
 
-    /// Holds so many in all, if that leaves the part of the budget that is for the many that are small.
+    /// Holds so many in all, if they are few, or leave the part of the budget that is for the many that are.
     ///
     /// # Errors
     /// As [`Permit::try_hold`].
     pub fn try_reserve(&mut self, bytes: usize) -> Result<(), Refusal> {
-        self.hold_within(self.largest(), bytes)
+        let few = self.budget.limit / 64;
+        self.hold_within(if bytes <= few { self.budget.limit } else { self.largest() }, bytes)
     }
 
     /// The most that [`Permit::try_reserve`] may ever hold.

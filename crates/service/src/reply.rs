@@ -32,10 +32,10 @@ pub async fn reply<F>(
     route: &'static str,
     request: &Parts,
     media_type: &'static str,
-    job: F,
+    mut job: F,
 ) -> Result<Response, ApiError>
 where
-    F: FnOnce(&Task) -> Result<Answer, ApiError> + Send + 'static,
+    F: FnMut(&Task) -> Result<Answer, ApiError> + Send + 'static,
 {
     let coding = coding(&request.headers);
     let state = app.clone();
@@ -104,8 +104,10 @@ impl Lines {
             let (lines, coded) = self.write(&line, &AtomicBool::new(false))?;
             return Ok((lines, app.memory.answers.permit(client).keep(coded)));
         }
+        // Once: it asks for no memory, hence it is not begun anew.
+        let mut lines = Some(self);
         let code = move |task: &Task| {
-            let (lines, coded) = self.write(&line, task)?;
+            let (lines, coded) = lines.take().ok_or(ApiError::Internal)?.write(&line, task)?;
             Ok((lines, task.keep(coded)))
         };
         app.compute.share(route, client, code, app.config.deadline).await

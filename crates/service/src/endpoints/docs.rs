@@ -53,7 +53,7 @@ pub async fn file(
         }
     };
     let media_type = media_type(&name);
-    let job = move |_: &Task| Ok(Answer { body: file.bytes.into_owned(), work: Work::default() });
+    let job = move |_: &Task| Ok(Answer { body: file.bytes.to_vec(), work: Work::default() });
     let response = reply(&app, "/docs/{*name}", &request, media_type, job).await?;
     Ok(([(header::CONTENT_SECURITY_POLICY, POLICY), (header::CACHE_CONTROL, "no-cache")], response).into_response())
 }
@@ -67,6 +67,6 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'u
 /// # Errors
 /// When the service is busy.
 pub async fn document(app: &AppState, request: &Parts, text: Bytes) -> Result<Response, ApiError> {
-    let job = move |_: &Task| Ok(Answer { body: text.into(), work: Work::default() });
+    let job = move |_: &Task| Ok(Answer { body: text.to_vec(), work: Work::default() });
     reply(app, "/openapi.json", request, "application/json", job).await
 }
