@@ -136,11 +136,11 @@ def test_costly_requests_give_way_to_short_ones(start):
     body = json.dumps(COSTLY).encode()
     assert len(body) < 600
     with closing([send(service, "/simulate", body, {}) for _ in range(66)]) as costly:
-        wait_for(lambda: metric(service, "reentry_jobs_suspended") >= 60)
+        wait_for(lambda: metric(service, "reentry_jobs_suspended") >= 30)
         # Before, there was no place for any, and those before them took half a minute.
         for _ in range(50):
             singles_are_served(service)
-        assert metric(service, "reentry_jobs_suspended") >= 50
+        assert metric(service, "reentry_jobs_suspended") >= 20
         # They are finished one after another.
         costly[0].settimeout(PATIENCE)
         assert costly[0].recv(1000).startswith(b"HTTP/1.1 200 ")
