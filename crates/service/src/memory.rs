@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use bytes::Bytes;
 
@@ -52,6 +52,8 @@ pub struct Budget {
 struct Held {
     all: usize,
     clients: HashMap<Client, usize>,
+    /// When somebody found no room.
+    lacked: Option<Instant>,
 }
 
 /// Why no more may be held.
@@ -78,9 +80,10 @@ impl Budget {
         self.held() >= self.limit
     }
 
-    /// Whether those who are slow should be waited for no longer: half of it is held.
+    /// Whether those who are slow should be waited for no longer: half of it is held, or somebody has just found no room.
     pub fn is_tight(&self) -> bool {
-        self.held() >= self.limit / 2
+        let held = self.lock();
+        held.all >= self.limit / 2 || held.lacked.is_some_and(|instant| instant.elapsed() < HURRY)
     }
 
     /// A permit of no bytes yet.
@@ -167,6 +170,7 @@ impl Permit {
         if bytes > self.bytes {
             let of_client = held.of(self.client) - self.bytes;
             if held.all - self.bytes + bytes > limit {
+                held.lacked = Some(Instant::now());
                 return Err(Refusal::Full);
             }
             if of_client > 0 && of_client + bytes > self.budget.limit / 2 {
