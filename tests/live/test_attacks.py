@@ -7,6 +7,7 @@ import signal
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from conftest import ORBIT, PATIENCE, wait_for
@@ -104,8 +105,11 @@ def test_a_client_holds_half_of_what_bodies_may_take(start):
 def test_readers_who_do_not_read_hold_no_slot_of_a_batch(start):
     service = start(*PROXY, "--batches", "4", "--deadline", "300", "--batch-deadline", "300", "--idle", "300")
     body = json.dumps([ROWS] * 20).encode()
-    with closing([send(service, "/simulate/batch", body, client(number)) for number in range(8)]) as readers:
-        service.wait_until_idle()
+    with closing([]) as readers:
+        for number in range(8):
+            readers.append(send(service, "/simulate/batch", body, client(number)))
+            # It has computed what its reader may be behind.
+            service.wait_until_idle()
         for _ in range(4):
             answer = service.request("POST", "/simulate/batch", json.dumps([QUICK] * 3), {**JSON, **client(99)})
             assert answer.status == 200
@@ -212,6 +216,30 @@ def test_a_body_may_come_in_a_coding(service):
         wrong = service.request("POST", "/simulate", body, {**JSON, "content-encoding": "gzip"})
         assert wrong.problem()["type"] == "/problems/unreadable-body"
         assert "gzip" in wrong.problem()["detail"]
+
+
+def test_members_of_gzip_without_a_text_are_given_up_with_their_client(start):
+    service = start("--workers", "1", "--deadline", "0.2")
+    member = gzip.compress(b"")
+    body = member * ((8 << 20) // len(member))
+    before = service.cpu_seconds()
+    late = service.request("POST", "/simulate/batch", body, {**JSON, "content-encoding": "gzip"})
+    assert late.problem()["type"] == "/problems/deadline-exceeded"
+    service.wait_until_idle()
+    # All of them would take a second.
+    assert service.cpu_seconds() < before + 0.5
+
+
+def test_the_tree_of_a_case_counts_as_held(start):
+    memory = 64 << 20
+    service = start("--memory", str(memory))
+    for case in [b'{"a":[' + b"1," * 1_000_000 + b"1]}", b'{"a":[' + b"[]," * 700_000 + b"1]}"]:
+        answer = service.request("POST", "/simulate/batch", b"[" + case + b"]", JSON)
+        assert json.loads(answer.body)["type"] == "/problems/answer-too-large"
+    assert service.request("POST", "/simulate/batch", b"[" + b"1," * 3_000_000 + b"1]", JSON).status == 422
+    status = Path(f"/proc/{service.process.pid}/status").read_text()
+    peak = 1024 * int(next(line for line in status.splitlines() if line.startswith("VmHWM:")).split()[1])
+    assert peak < memory + 64e6
 
 
 def zstd(text):

@@ -167,16 +167,17 @@ pub enum InflateError<E> {
     Refused(E),
 }
 
-/// The text of a body in a coding. `grow` is asked every [`CHUNK`] whether the text may become so long.
+/// The text of a body in a coding; `interrupt` ends it early. `grow` is asked every [`CHUNK`] whether the text may become so long.
 ///
 /// # Errors
-/// When the body is not what its coding says, and those of `grow`.
+/// When the body is not what its coding says, or `interrupt` is raised, and those of `grow`.
 pub fn inflate<E>(
     coding: Coding,
     body: &[u8],
+    interrupt: &dyn Interrupt,
     mut grow: impl FnMut(usize) -> Result<(), E>,
 ) -> Result<Vec<u8>, InflateError<E>> {
-    let mut reader = decoder(coding, body).map_err(InflateError::Unreadable)?;
+    let mut reader = decoder(coding, Watched { body, interrupt }).map_err(InflateError::Unreadable)?;
     let (mut text, mut chunk) = (Vec::new(), vec![0; CHUNK]);
     loop {
         let length = reader.read(&mut chunk).map_err(InflateError::Unreadable)?;
@@ -188,16 +189,35 @@ pub fn inflate<E>(
     }
 }
 
-fn decoder(coding: Coding, body: &[u8]) -> io::Result<Box<dyn Read + '_>> {
+fn decoder<'a>(coding: Coding, body: Watched<'a>) -> io::Result<Box<dyn Read + 'a>> {
     Ok(match coding {
         Coding::Identity | Coding::Brotli => Box::new(body),
         Coding::Gzip => Box::new(MultiGzDecoder::new(body)),
         Coding::Zstd => {
-            let mut decoder = ZstdDecoder::with_buffer(body)?;
+            let mut decoder = ZstdDecoder::new(body)?;
             decoder.window_log_max(ZSTD_WINDOW)?;
             Box::new(decoder)
         }
     })
+}
+
+/// A body that is read in pieces, with a look at the flag before each: a decoder may read much and give nothing.
+struct Watched<'a> {
+    body: &'a [u8],
+    interrupt: &'a dyn Interrupt,
+}
+
+/// Bytes that are read between two looks at the flag: at most a millisecond, where all of them are empty members of gzip.
+const PIECE: usize = 1 << 13;
+
+impl Read for Watched<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.interrupt.is_raised() {
+            return Err(io::ErrorKind::Other.into());
+        }
+        let length = buffer.len().min(PIECE);
+        self.body.read(&mut buffer[..length])
+    }
 }
 
 /// The window that a frame may ask for, as a power of two: 8 MiB, which is what RFC 8878 has decoders support.

@@ -28,7 +28,7 @@ use crate::memory::{HURRY, Memory, Permit};
 use crate::metrics::Metrics;
 use crate::rate::RateLimit;
 use slots::{Slot, Slots};
-use turns::{LONG, Place, Turn, Turns};
+use turns::{Place, Turn, Turns, long};
 
 /// A runtime of its own whose blocking threads compute; the threads that talk to clients never do.
 #[derive(Debug)]
@@ -207,6 +207,7 @@ impl Compute {
             client,
             turns: Arc::clone(&pool.turns),
             suspended: Arc::clone(&pool.suspended),
+            most_suspended: pool.most_suspended,
             asked: Instant::now(),
             state: Mutex::new(State::new(place, self.memory.answers.permit(client))),
             metrics: Arc::clone(&self.metrics),
@@ -270,6 +271,7 @@ struct Pool {
     turns: Arc<Turns>,
     /// For jobs that have given way.
     suspended: Arc<Semaphore>,
+    most_suspended: usize,
 }
 
 impl Pool {
@@ -282,6 +284,7 @@ impl Pool {
             turns: Turns::new(workers, threads.handle().clone()),
             threads: Some(threads),
             suspended: Arc::new(Semaphore::new(suspended)),
+            most_suspended: suspended,
         })
     }
 }
@@ -330,6 +333,7 @@ pub struct Task {
     client: Client,
     turns: Arc<Turns>,
     suspended: Arc<Semaphore>,
+    most_suspended: usize,
     /// When it was asked for.
     asked: Instant,
     state: Mutex<State>,
@@ -429,16 +433,18 @@ impl Task {
         refusal.map_or(result, Err)
     }
 
-    /// Where the job found no room in memory, waits until there is room for twice as much as it wanted; whether the job is then to begin anew.
+    /// Where the job found no room in memory, waits until there is room for that and a quarter more; whether the job is then to begin anew.
     ///
     /// Meanwhile it holds nothing: jobs that held something while they waited for more would wait for each other.
     fn waited_for_room(&self) -> bool {
         let mut state = self.lock();
         let Some(wanted) = state.wanted.take() else { return false };
         state.reserve(0);
+        // What it has computed was in vain, and others had to wait for it.
+        state.is_long = true;
         while !self.is_over() && state.reserved == 0 {
             self.suspend(&mut state, Place::Last, PAUSE);
-            state.reserve(2 * wanted);
+            state.reserve(wanted + wanted / 4);
         }
         !self.is_over()
     }
@@ -461,10 +467,13 @@ impl Task {
         let was_long = state.is_long;
         if !was_long && now >= state.look {
             state.look = now + LOOK;
-            state.is_long = state.computed() >= LONG;
+            state.is_long = state.computed() >= long(self.suspended.available_permits(), self.most_suspended);
         }
         if state.is_long && self.turns.are_due(now - state.since) {
             let place = if was_long { Place::First } else { Place::Last };
+            if let Some(turn) = &mut state.turn {
+                turn.is_of_a_long_job();
+            }
             self.suspend(&mut state, place, Duration::ZERO);
         }
     }

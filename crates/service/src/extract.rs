@@ -35,7 +35,11 @@ impl Payload {
     /// # Errors
     /// As [`Payload::text`], and when the text is not JSON.
     pub fn json(&self, interrupt: &dyn Interrupt) -> Result<Value, ApiError> {
-        Ok(json::parse(&self.text(interrupt)?)?)
+        let text = self.text(interrupt)?;
+        if !interrupt.may_hold(tree(&text)) {
+            return Err(ApiError::Interrupted);
+        }
+        Ok(json::parse(&text)?)
     }
 
     /// The text.
@@ -49,23 +53,27 @@ impl Payload {
             return Ok(bytes.clone());
         }
         let mut permit = budget.permit(*client);
-        let text = inflate(coding, bytes, |length| {
-            if interrupt.is_raised() {
-                Err(ApiError::Interrupted)
-            } else if length > limit {
+        let text = inflate(coding, bytes, interrupt, |length| {
+            if length > limit {
                 Err(ApiError::PayloadTooLarge { limit })
             } else {
-                permit.try_hold(length).map_err(ApiError::from)
+                permit.try_hold_beside(length).map_err(ApiError::from)
             }
         });
         match text {
             Ok(text) => Ok(permit.keep(text)),
+            Err(InflateError::Unreadable(_)) if interrupt.is_raised() => Err(ApiError::Interrupted),
             Err(InflateError::Unreadable(error)) => {
                 Err(ApiError::UnreadableBody(format!("it is not {}: {error}", coding.name())))
             }
             Err(InflateError::Refused(error)) => Err(error),
         }
     }
+}
+
+/// The bytes that the tree of a text takes at most, and what is made of it later: of a list of numbers of one digit 35 times its length.
+pub fn tree(text: &[u8]) -> usize {
+    36 * text.len()
 }
 
 impl FromRequest<AppState> for Payload {
@@ -114,7 +122,8 @@ async fn read(request: Request, state: &AppState, limit: usize, budget: &Arc<Bud
 /// The coding in which a request with these headers has its body.
 fn declared_coding(headers: &HeaderMap) -> Result<Coding, ApiError> {
     let mut lines = headers.get_all(header::CONTENT_ENCODING).iter();
-    let coding = lines.next().map_or(Ok("identity"), |line| line.to_str()).unwrap_or("an unreadable coding").trim();
+    let coding = lines.next().map_or(Ok(""), |line| line.to_str()).unwrap_or("an unreadable coding").trim();
+    let coding = if coding.is_empty() { "identity" } else { coding };
     let known = [Coding::Identity, Coding::Gzip, Coding::Zstd];
     match known.into_iter().find(|known| known.name().eq_ignore_ascii_case(coding)) {
         Some(known) if lines.next().is_none() => Ok(known),

@@ -151,6 +151,21 @@ impl Permit {
         self.hold_within(self.budget.limit, bytes)
     }
 
+    /// Holds so many in all beside something else of which it is made, if there is room up to the limit.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn try_hold_beside(&mut self, bytes: usize) -> Result<(), Refusal> {
+        let mut held = self.budget.lock();
+        if held.all - self.bytes + bytes > self.budget.limit {
+            held.lacked = Some(Instant::now());
+            return Err(Refusal::Full);
+        }
+        held.change(self.client, self.bytes, bytes);
+        self.bytes = bytes;
+        Ok(())
+    }
+
     /// Holds so many in all, if they are few, or leave the part of the budget that is for the many that are.
     ///
     /// # Errors

@@ -9,11 +9,24 @@ use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::sync::oneshot::{Receiver, Sender, channel};
 
-/// From here on a job is long, by the processor time that it has taken. Nearly all flights take less.
-pub(super) const LONG: Duration = Duration::from_millis(100);
+/// From here on a job is long, by the processor time that it has taken, where no other is suspended. Nearly all flights take less.
+const LONG: Duration = Duration::from_millis(50);
+
+/// From here on, where as many are suspended as may be.
+const LEAST_LONG: Duration = Duration::from_millis(2);
+
+/// From where on a job is long, where so many more may be suspended of all: the more there are, the sooner the next is known to be one.
+pub(super) fn long(places: usize, of_all: usize) -> Duration {
+    let places = u32::try_from(places).unwrap_or(u32::MAX);
+    let of_all = u32::try_from(of_all).unwrap_or(u32::MAX);
+    (LONG / of_all.max(1)).saturating_mul(places).max(LEAST_LONG)
+}
 
 /// What short jobs may compute beyond the half that is theirs, while long ones wait.
 const LEAD: Duration = Duration::from_millis(5);
+
+/// The greatest lead that is to be made up for: who waits for that is to be short.
+const MOST_LEAD: Duration = Duration::from_millis(20);
 
 /// A job that has not begun; it gives its turn back, unless it has given it to another.
 pub(super) type Job = Box<dyn FnOnce(Turn) -> Option<Turn> + Send>;
@@ -123,7 +136,7 @@ impl Turns {
         let lead = match is_long {
             true => self.lead().saturating_sub(had),
             false if state.long.is_empty() => return,
-            false => self.lead() + had,
+            false => (self.lead() + had).min(MOST_LEAD),
         };
         self.lead.store(u64::try_from(lead.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
     }
@@ -184,6 +197,11 @@ impl State {
 }
 
 impl Turn {
+    /// The job that has it has turned out to be long: what it has computed is no lead of the short ones.
+    pub(super) fn is_of_a_long_job(&mut self) {
+        self.is_long = true;
+    }
+
     /// The next job that is to begin, if it is the turn of one; else the turn has gone on.
     fn next_job(mut self) -> Option<(Job, Self)> {
         let turns = self.turns.take()?;
@@ -222,7 +240,14 @@ mod tests {
 
     use tokio::runtime::{Builder, Runtime};
 
-    use super::{Place, Turn, Turns};
+    use super::{LEAST_LONG, LONG, Place, Turn, Turns, long};
+
+    #[test]
+    fn a_job_is_long_the_sooner_the_more_are_suspended() {
+        assert_eq!(long(64, 64), LONG);
+        assert_eq!(long(32, 64), LONG / 2);
+        assert_eq!([long(1, 64), long(0, 64), long(0, 0)], [LEAST_LONG; 3]);
+    }
 
     /// The turns of one worker, and the threads of which it is one.
     fn one() -> (Arc<Turns>, Runtime) {

@@ -7,6 +7,7 @@ use axum::extract::State;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use futures_util::{Stream, stream};
+use reentry::Interrupt;
 use tokio::sync::mpsc;
 use tokio::time::Instant;
 
@@ -14,12 +15,13 @@ use crate::answer::{self, Answer};
 use crate::client::Client;
 use crate::compute::Task;
 use crate::error::ApiError;
-use crate::extract::BatchPayload;
+use crate::extract::{BatchPayload, tree};
 use crate::format::Format;
 use crate::reply::{self, Lines};
 use crate::state::AppState;
+use crate::wire::batch::{self, MOST_CASES};
+use crate::wire::json;
 use crate::wire::scenario::SimulateRequest;
-use crate::wire::{batch, json};
 
 /// Flies a list of cases.
 ///
@@ -68,6 +70,9 @@ pub async fn simulate_batch(
 const ROUTE: &str = "/simulate/batch";
 
 fn fly(app: &AppState, case: &[u8], task: &Task) -> Result<Bytes, ApiError> {
+    if !task.may_hold(tree(case)) {
+        return Err(ApiError::Interrupted);
+    }
     let tree = json::parse(case).map_err(ApiError::CaseNotJson)?;
     let Answer { body, work } = answer::simulate(tree, Format::Json, app.config.row_limit, task)?;
     app.metrics.flown(ROUTE, work);
@@ -124,6 +129,11 @@ impl Batch {
 
 /// The text of each case: a case is parsed when its turn comes, as its tree is many times as large.
 fn cases(body: &Bytes) -> Result<Vec<Bytes>, ApiError> {
+    // Before there is memory for each.
+    let count = json::count(body);
+    if count > MOST_CASES {
+        return Err(ApiError::Invalid(vec![batch::too_many(count)]));
+    }
     let cases = batch::cases(json::elements(body)?).map_err(ApiError::Invalid)?;
     Ok(cases.into_iter().map(|case| body.slice_ref(case.get().as_bytes())).collect())
 }

@@ -16,9 +16,12 @@ pub fn cases(elements: Option<Vec<&RawValue>>) -> Result<Vec<&RawValue>, Vec<Fau
     match elements {
         None => fault("must be an array of cases, each as /simulate takes it".to_owned()),
         Some(cases) if cases.is_empty() => fault("must have at least 1 case, got none".to_owned()),
-        Some(cases) if cases.len() > MOST_CASES => {
-            fault(format!("must have at most {MOST_CASES} cases, got {}", cases.len()))
-        }
+        Some(cases) if cases.len() > MOST_CASES => Err(vec![too_many(cases.len())]),
         Some(cases) => Ok(cases),
     }
+}
+
+/// The fault of a list of so many cases.
+pub fn too_many(count: usize) -> Fault {
+    Fault::new("", format!("must have at most {MOST_CASES} cases, got {count}"))
 }

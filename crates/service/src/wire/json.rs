@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{self, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::value::RawValue;
 use serde_json::{Map, Number, Value};
 
@@ -26,6 +26,11 @@ pub fn parse(text: &[u8]) -> Result<Value, serde_json::Error> {
 pub fn elements(text: &[u8]) -> Result<Option<Vec<&RawValue>>, serde_json::Error> {
     let whole: &RawValue = serde_json::from_slice(text)?;
     if whole.get().starts_with('[') { serde_json::from_str(whole.get()).map(Some) } else { Ok(None) }
+}
+
+/// How many elements a JSON array has, counted without memory for each; 0 of what is none.
+pub fn count(text: &[u8]) -> usize {
+    serde_json::from_slice(text).map_or(0, |elements: Vec<IgnoredAny>| elements.len())
 }
 
 /// Builds a [`Value`] and refuses duplicate keys, which [`Value`]'s own reader would drop.
