@@ -19,8 +19,8 @@ use crate::mix::{Kind, SHORT, Tally};
 
 /// How many times its idle value the p99 of short requests may be beside an attack.
 const GREATEST_SLOWDOWN: f64 = 10.0;
-/// After which a client tries again that was refused or given up.
-const PAUSE: Duration = Duration::from_millis(500);
+/// After which a client tries again that was refused or given up: what `Retry-After` asks for.
+const PAUSE: Duration = Duration::from_secs(1);
 /// How long a client that does not read keeps its connection.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The length of a batch's body at most.

@@ -471,9 +471,6 @@ impl Task {
         }
         if state.is_long && self.turns.are_due(now - state.since) {
             let place = if was_long { Place::First } else { Place::Last };
-            if let Some(turn) = &mut state.turn {
-                turn.is_of_a_long_job();
-            }
             self.suspend(&mut state, place, Duration::ZERO);
         }
     }

@@ -25,9 +25,6 @@ pub(super) fn long(places: usize, of_all: usize) -> Duration {
 /// What short jobs may compute beyond the half that is theirs, while long ones wait.
 const LEAD: Duration = Duration::from_millis(5);
 
-/// The greatest lead that is to be made up for: who waits for that is to be short.
-const MOST_LEAD: Duration = Duration::from_millis(20);
-
 /// A job that has not begun; it gives its turn back, unless it has given it to another.
 pub(super) type Job = Box<dyn FnOnce(Turn) -> Option<Turn> + Send>;
 
@@ -136,7 +133,7 @@ impl Turns {
         let lead = match is_long {
             true => self.lead().saturating_sub(had),
             false if state.long.is_empty() => return,
-            false => (self.lead() + had).min(MOST_LEAD),
+            false => self.lead() + had,
         };
         self.lead.store(u64::try_from(lead.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
     }
@@ -197,11 +194,6 @@ impl State {
 }
 
 impl Turn {
-    /// The job that has it has turned out to be long: what it has computed is no lead of the short ones.
-    pub(super) fn is_of_a_long_job(&mut self) {
-        self.is_long = true;
-    }
-
     /// The next job that is to begin, if it is the turn of one; else the turn has gone on.
     fn next_job(mut self) -> Option<(Job, Self)> {
         let turns = self.turns.take()?;
