@@ -167,7 +167,7 @@ pub enum InflateError<E> {
     Refused(E),
 }
 
-/// The text of a body in a coding; `interrupt` ends it early. `grow` is asked every [`CHUNK`] whether the text may become so long.
+/// The text of a body in a coding; `interrupt` ends it early. `grow` is asked every 256 KiB whether the text may become so long.
 ///
 /// # Errors
 /// When the body is not what its coding says, or `interrupt` is raised, and those of `grow`.
