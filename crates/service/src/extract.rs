@@ -36,9 +36,7 @@ impl Payload {
     /// As [`Payload::text`], and when the text is not JSON.
     pub fn json(&self, interrupt: &dyn Interrupt) -> Result<Value, ApiError> {
         let text = self.text(interrupt)?;
-        if !interrupt.may_hold(tree(&text)) {
-            return Err(ApiError::Interrupted);
-        }
+        hold_tree(&text, interrupt)?;
         Ok(json::parse(&text)?)
     }
 
@@ -71,10 +69,18 @@ impl Payload {
     }
 }
 
-/// The bytes that the tree of a text takes at most, and what is made of it later: of a list of numbers of one digit 35 times its length.
-pub fn tree(text: &[u8]) -> usize {
-    36 * text.len()
+/// Holds what the tree of a text takes at most, and what is made of it later, if that is much.
+///
+/// # Errors
+/// When there is no room for it.
+pub fn hold_tree(text: &[u8], interrupt: &dyn Interrupt) -> Result<(), ApiError> {
+    // A list of numbers of one digit takes 35 times its length.
+    let bytes = 36 * text.len();
+    if bytes <= LITTLE || interrupt.may_hold(bytes) { Ok(()) } else { Err(ApiError::Interrupted) }
 }
+
+/// What is not counted while a job computes, as the first steps of a flight are not, bytes.
+const LITTLE: usize = 1 << 20;
 
 impl FromRequest<AppState> for Payload {
     type Rejection = ApiError;

@@ -7,7 +7,6 @@ use axum::extract::State;
 use axum::http::request::Parts;
 use axum::response::{IntoResponse, Response};
 use futures_util::{Stream, stream};
-use reentry::Interrupt;
 use tokio::sync::mpsc;
 use tokio::time::Instant;
 
@@ -15,7 +14,7 @@ use crate::answer::{self, Answer};
 use crate::client::Client;
 use crate::compute::Task;
 use crate::error::ApiError;
-use crate::extract::{BatchPayload, tree};
+use crate::extract::{BatchPayload, hold_tree};
 use crate::format::Format;
 use crate::reply::{self, Lines};
 use crate::state::AppState;
@@ -70,9 +69,7 @@ pub async fn simulate_batch(
 const ROUTE: &str = "/simulate/batch";
 
 fn fly(app: &AppState, case: &[u8], task: &Task) -> Result<Bytes, ApiError> {
-    if !task.may_hold(tree(case)) {
-        return Err(ApiError::Interrupted);
-    }
+    hold_tree(case, task)?;
     let tree = json::parse(case).map_err(ApiError::CaseNotJson)?;
     let Answer { body, work } = answer::simulate(tree, Format::Json, app.config.row_limit, task)?;
     app.metrics.flown(ROUTE, work);
