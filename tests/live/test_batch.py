@@ -130,7 +130,7 @@ def test_a_client_that_does_not_read_is_cut_off_and_sees_it(start):
 
 
 def test_unread_batches_keep_no_worker_from_singles(start):
-    service = start("--workers", "1", "--deadline", "300", "--batch-deadline", "300")
+    service = start("--workers", "1", "--deadline", "300", "--batch-deadline", "300", "--memory", str(2 << 30))
     rows = {**QUICK, "stop": {"time": 1000}, "output": {"count": 20_000}}
     unread = [send(service, [rows] * 100) for _ in range(10)]
     service.wait_until_idle()
