@@ -1,15 +1,16 @@
 //! One problem document of every type, to the letter.
 
 use std::io;
+use std::net::IpAddr;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
-use axum::http::{Extensions, HeaderMap, Method, Request, header};
+use axum::http::{Method, Request, header};
 use http_body_util::{BodyExt, Full, Limited};
 use reentry::Interrupt;
-use reentry_service::client::{Client, Peer, client};
+use reentry_service::client::Client;
 use reentry_service::compute::Task;
 use reentry_service::config::Config;
 use reentry_service::error::ApiError;
@@ -365,11 +366,7 @@ async fn a_job_without_room_for_its_answer_begins_anew_when_there_is() {
     let much = Config::default().memory / 2;
     let (free, freed) = mpsc::channel::<()>();
     let (holds, held) = mpsc::channel();
-    let client = |number: u8| {
-        let mut extensions = Extensions::new();
-        extensions.insert(Peer(([203, 0, 113, number], 1234).into()));
-        client(&extensions, &HeaderMap::new(), &Config::default())
-    };
+    let client = |number: u8| Client::from(IpAddr::from([203, 0, 113, number]));
     let first = {
         let compute = Arc::clone(&compute);
         let job = move |task: &Task| {

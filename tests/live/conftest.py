@@ -168,3 +168,15 @@ def service(tmp_path_factory):
     service = Service(tmp_path_factory.mktemp("service"))
     yield service
     service.end()
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Writes a value to a file."""
+
+    def file(value, name="case.json"):
+        path = tmp_path / name
+        path.write_text(value if isinstance(value, str) else json.dumps(value))
+        return str(path)
+
+    return file

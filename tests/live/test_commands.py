@@ -31,18 +31,6 @@ def reproducible(answer):
     return {**answer, "solver": {**answer["solver"], "elapsed": None}} if "solver" in answer else answer
 
 
-@pytest.fixture
-def file(tmp_path):
-    """Writes a value to a file."""
-
-    def file(value, name="case.json"):
-        path = tmp_path / name
-        path.write_text(value if isinstance(value, str) else json.dumps(value))
-        return str(path)
-
-    return file
-
-
 def post(service, path, text):
     return service.request("POST", path, text, {"content-type": "application/json"}).body
 

@@ -23,18 +23,6 @@ FORGERY = "\x1b[2J\r\n\x07\x7f\x9b31m\u2028\u2029\u202e\u2066\u200b\u00ad\ufeff"
 MEBIBYTE = 1 << 20
 
 
-@pytest.fixture
-def file(tmp_path):
-    """Writes a value to a file."""
-
-    def file(value, name="case.json"):
-        path = tmp_path / name
-        path.write_text(value if isinstance(value, str) else json.dumps(value))
-        return str(path)
-
-    return file
-
-
 def is_safe(text):
     """Whether a text has lines of visible characters alone."""
     return all(line.isprintable() and not any(unicodedata.category(c) == "Cf" for c in line) for line in text.split("\n"))

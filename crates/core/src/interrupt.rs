@@ -9,7 +9,7 @@ pub trait Interrupt: Debug + Sync {
     /// does not answer, the computation is suspended.
     fn is_raised(&self) -> bool;
 
-    /// Whether the steps that a flight keeps may take so many bytes in all; else the flight ends.
+    /// Whether the computation may hold so many bytes in all, the steps of a flight or what is made of them; else it is to end.
     fn may_hold(&self, _bytes: usize) -> bool {
         true
     }

@@ -103,13 +103,12 @@ fn rows(job: &Job, flight: &Trajectory, limit: usize, held: &mut Held) -> Result
     let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
     let too_large = ApiError::NoMemory { rows: instants.len() as u64 };
-    if instants.len() > ROWS_THAT_ALWAYS_FIT
-        && available_memory().is_some_and(|bytes| bytes / BYTES_OF_A_ROW < instants.len() as u64)
-    {
+    let columns = job.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
+    let bytes = instants.len() * (size_of::<FlightPoint>() + columns * NUMBER);
+    if instants.len() > ROWS_THAT_ALWAYS_FIT && available_memory().is_some_and(|available| available < bytes as u64) {
         return Err(too_large);
     }
-    let columns = job.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
-    held.reserve_rows(instants.len(), columns)?;
+    held.reserve_rows(instants.len(), bytes)?;
     let mut points = Vec::new();
     points.try_reserve_exact(instants.len()).map_err(|_| too_large)?;
     for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
@@ -126,10 +125,6 @@ fn rows(job: &Job, flight: &Trajectory, limit: usize, held: &mut Held) -> Result
 
 /// Rows for which nobody asks the system whether it has the memory.
 const ROWS_THAT_ALWAYS_FIT: usize = 100_000;
-
-/// What a row takes while its answer is made, as measured: some 300 bytes as numbers and 500 as text, and 80 more for each column on
-/// request.
-const BYTES_OF_A_ROW: u64 = 1024;
 
 /// Bytes that are free, as far as the system tells: asking for more does not fail there, but has the program killed later on. Several
 /// cases at once each see the same, so that this is no promise.
@@ -199,11 +194,12 @@ impl<'a> Held<'a> {
         Self { interrupt, bytes, reserved: bytes, rows: 0 }
     }
 
-    /// Reserves what rows take, and their text, at once: who has one part and waits for the other would be in the way of others.
-    fn reserve_rows(&mut self, rows: usize, columns: usize) -> Result<(), ApiError> {
+    /// Reserves what rows and their text take, so many bytes together.
+    fn reserve_rows(&mut self, rows: usize, bytes: usize) -> Result<(), ApiError> {
+        self.reserve(self.bytes + bytes)?;
         self.rows = rows;
         self.bytes += rows * size_of::<FlightPoint>();
-        self.reserve(self.bytes + rows * columns * NUMBER)
+        Ok(())
     }
 
     fn reserve(&mut self, bytes: usize) -> Result<(), ApiError> {

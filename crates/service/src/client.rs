@@ -17,6 +17,12 @@ const X_FORWARDED_FOR: HeaderName = HeaderName::from_static("x-forwarded-for");
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Client(Option<IpAddr>);
 
+impl From<IpAddr> for Client {
+    fn from(address: IpAddr) -> Self {
+        Self(Some(address))
+    }
+}
+
 impl Client {
     /// The client of a request that [`client`] has put into its extensions.
     pub fn of(extensions: &Extensions) -> Self {

@@ -41,6 +41,14 @@ pub enum ApiError {
         /// The time allowed, s.
         seconds: f64,
     },
+    /// The body came too slowly while there was little memory.
+    #[error(
+        "the body came more slowly than {least} bytes a second, which is too slow while the service has little memory left"
+    )]
+    BodyTooSlow {
+        /// The slowest that is waited for, bytes a second.
+        least: usize,
+    },
     /// There is nothing at this path.
     #[error("there is nothing at {0}; see /docs")]
     NotFound(String),
@@ -174,7 +182,9 @@ impl ApiError {
                 (Status::REQUEST_HEADER_FIELDS_TOO_LARGE, "/problems/head-too-large", "Head of the request too large")
             }
             Self::UnreadableBody(_) => (Status::BAD_REQUEST, "/problems/unreadable-body", "Unreadable body"),
-            Self::BodyTimeout { .. } => (Status::REQUEST_TIMEOUT, "/problems/request-timeout", "Body too slow"),
+            Self::BodyTimeout { .. } | Self::BodyTooSlow { .. } => {
+                (Status::REQUEST_TIMEOUT, "/problems/request-timeout", "Body too slow")
+            }
             Self::NotFound(_) => (Status::NOT_FOUND, "/problems/not-found", "Not found"),
             Self::MethodNotAllowed(_) => {
                 (Status::METHOD_NOT_ALLOWED, "/problems/method-not-allowed", "Method not allowed")

@@ -22,6 +22,8 @@ use crate::wire::json;
 #[derive(Debug)]
 pub struct Payload {
     bytes: Bytes,
+    /// What these take in memory.
+    held: usize,
     coding: Coding,
     limit: usize,
     /// Where the text counts that is made of another coding, and whose it is.
@@ -45,17 +47,17 @@ impl Payload {
     /// # Errors
     /// When the body is not what its coding says, or when its text is too long or has no room in memory.
     pub fn text(&self, interrupt: &dyn Interrupt) -> Result<Bytes, ApiError> {
-        let Self { bytes, coding, limit, budget, client } = self;
+        let Self { bytes, held, coding, limit, budget, client } = self;
         let (coding, limit) = (*coding, *limit);
         if coding == Coding::Identity {
             return Ok(bytes.clone());
         }
-        let mut permit = budget.permit(*client);
+        let mut permit = budget.permit_beside(*client, *held);
         let text = inflate(coding, bytes, interrupt, |length| {
             if length > limit {
                 Err(ApiError::PayloadTooLarge { limit })
             } else {
-                permit.try_hold_beside(length).map_err(ApiError::from)
+                permit.try_hold(length).map_err(ApiError::from)
             }
         });
         match text {
@@ -120,9 +122,9 @@ async fn read(request: Request, state: &AppState, limit: usize, budget: &Arc<Bud
     let client = Client::of(request.extensions());
     let received = collect(request.into_body(), limit, budget, client);
     let bytes = timeout(deadline, received).await;
-    let bytes = bytes.map_err(|_| ApiError::BodyTimeout { seconds: deadline.as_secs_f64() })??;
+    let (bytes, held) = bytes.map_err(|_| ApiError::BodyTimeout { seconds: deadline.as_secs_f64() })??;
     state.metrics.received(&route, bytes.len());
-    Ok(Payload { bytes, coding, limit, budget: Arc::clone(budget), client })
+    Ok(Payload { bytes, held, coding, limit, budget: Arc::clone(budget), client })
 }
 
 /// The coding in which a request with these headers has its body.
@@ -138,8 +140,13 @@ fn declared_coding(headers: &HeaderMap) -> Result<Coding, ApiError> {
     }
 }
 
-/// The bytes of a body, which count as held from the first on. Where bodies take much memory, one that comes slowly is not waited for.
-async fn collect(mut body: Body, limit: usize, budget: &Arc<Budget>, client: Client) -> Result<Bytes, ApiError> {
+/// The bytes of a body, which count as held from the first on, and what they take in memory. Where bodies take much memory, one that comes slowly is not waited for.
+async fn collect(
+    mut body: Body,
+    limit: usize,
+    budget: &Arc<Budget>,
+    client: Client,
+) -> Result<(Bytes, usize), ApiError> {
     budget.admit(client)?;
     let mut permit = budget.permit(client);
     let mut bytes = Vec::new();
@@ -147,7 +154,7 @@ async fn collect(mut body: Body, limit: usize, budget: &Arc<Budget>, client: Cli
     loop {
         let Ok(frame) = timeout_at(look, body.frame()).await else {
             if budget.is_tight() && bytes.len() - before < SLOWEST {
-                return Err(ApiError::BodyTimeout { seconds: HURRY.as_secs_f64() });
+                return Err(ApiError::BodyTooSlow { least: SLOWEST });
             }
             (look, before) = (look + HURRY, bytes.len());
             continue;
@@ -166,7 +173,8 @@ async fn collect(mut body: Body, limit: usize, budget: &Arc<Budget>, client: Cli
         }
         bytes.extend_from_slice(&data);
     }
-    Ok(permit.keep(bytes))
+    let held = bytes.capacity();
+    Ok((permit.keep(bytes), held))
 }
 
 /// `application/json` or a type built on it, with any parameters.

@@ -88,7 +88,12 @@ impl Budget {
 
     /// A permit of no bytes yet.
     pub fn permit(self: &Arc<Self>, client: Client) -> Permit {
-        Permit { budget: Arc::clone(self), client: client.site(), bytes: 0 }
+        self.permit_beside(client, 0)
+    }
+
+    /// A permit of no bytes yet, for what is made of something of so many bytes that the client holds: the two are one thing.
+    pub fn permit_beside(self: &Arc<Self>, client: Client, source: usize) -> Permit {
+        Permit { budget: Arc::clone(self), client: client.site(), source, bytes: 0 }
     }
 
     /// Whether a client may begin to hold something.
@@ -138,6 +143,8 @@ impl Held {
 pub struct Permit {
     budget: Arc<Budget>,
     client: Client,
+    /// Bytes that are held for the same thing by another permit.
+    source: usize,
     bytes: usize,
 }
 
@@ -149,21 +156,6 @@ impl Permit {
     /// before is held on.
     pub fn try_hold(&mut self, bytes: usize) -> Result<(), Refusal> {
         self.hold_within(self.budget.limit, bytes)
-    }
-
-    /// Holds so many in all beside something else of which it is made, if there is room up to the limit.
-    ///
-    /// # Errors
-    /// When there is none.
-    pub fn try_hold_beside(&mut self, bytes: usize) -> Result<(), Refusal> {
-        let mut held = self.budget.lock();
-        if held.all - self.bytes + bytes > self.budget.limit {
-            held.lacked = Some(Instant::now());
-            return Err(Refusal::Full);
-        }
-        held.change(self.client, self.bytes, bytes);
-        self.bytes = bytes;
-        Ok(())
     }
 
     /// Holds so many in all, if they are few, or leave the part of the budget that is for the many that are.
@@ -183,12 +175,12 @@ impl Permit {
     fn hold_within(&mut self, limit: usize, bytes: usize) -> Result<(), Refusal> {
         let mut held = self.budget.lock();
         if bytes > self.bytes {
-            let of_client = held.of(self.client) - self.bytes;
+            let others = held.of(self.client) - self.bytes - self.source;
             if held.all - self.bytes + bytes > limit {
                 held.lacked = Some(Instant::now());
                 return Err(Refusal::Full);
             }
-            if of_client > 0 && of_client + bytes > self.budget.limit / 2 {
+            if others > 0 && others + bytes > self.budget.limit / 2 {
                 return Err(Refusal::Share);
             }
         }
@@ -219,5 +211,94 @@ struct Kept {
 impl AsRef<[u8]> for Kept {
     fn as_ref(&self) -> &[u8] {
         &self.bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::IpAddr;
+    use std::sync::Arc;
+
+    use super::{Budget, Permit, Refusal};
+    use crate::client::Client;
+
+    fn client(number: u8) -> Client {
+        Client::from(IpAddr::from([203, 0, 113, number]))
+    }
+
+    fn holding(budget: &Arc<Budget>, number: u8, bytes: usize) -> Permit {
+        let mut permit = budget.permit(client(number));
+        permit.try_hold(bytes).unwrap();
+        permit
+    }
+
+    #[test]
+    fn a_client_holds_one_thing_or_half_of_a_budget() {
+        let budget = Arc::new(Budget::new(1000));
+        let one = holding(&budget, 1, 700);
+        assert_eq!(budget.permit(client(1)).try_hold(1), Err(Refusal::Share));
+        assert_eq!(budget.admit(client(1)), Err(Refusal::Share));
+        assert_eq!(budget.admit(client(2)), Ok(()));
+        assert_eq!(budget.permit(client(2)).try_hold(301), Err(Refusal::Full));
+        let others = [holding(&budget, 2, 100), holding(&budget, 2, 200)];
+        assert_eq!(budget.admit(client(3)), Err(Refusal::Full));
+        drop(one);
+        assert_eq!(budget.permit(client(2)).try_hold(201), Err(Refusal::Share));
+        assert_eq!(budget.permit(client(2)).try_hold(200), Ok(()));
+        drop(others);
+        assert_eq!(budget.held(), 0);
+    }
+
+    #[test]
+    fn what_was_held_is_held_on_where_more_is_refused() {
+        let budget = Arc::new(Budget::new(1000));
+        let mut permit = holding(&budget, 1, 600);
+        assert_eq!(permit.try_hold(1001), Err(Refusal::Full));
+        assert_eq!(budget.held(), 600);
+        assert_eq!(permit.try_hold(200), Ok(()));
+        assert_eq!(budget.held(), 200);
+        let kept = permit.keep(Vec::with_capacity(50));
+        assert_eq!(budget.held(), 50);
+        drop(kept.clone());
+        assert_eq!(budget.held(), 50);
+        drop(kept);
+        assert_eq!(budget.held(), 0);
+    }
+
+    #[test]
+    fn a_text_and_the_body_of_which_it_is_made_are_one_thing() {
+        let budget = Arc::new(Budget::new(1000));
+        let _body = holding(&budget, 1, 100);
+        assert_eq!(budget.permit(client(1)).try_hold(600), Err(Refusal::Share));
+        let mut text = budget.permit_beside(client(1), 100);
+        assert_eq!(text.try_hold(600), Ok(()));
+        // Beside another body it is not.
+        drop(text);
+        let _other = holding(&budget, 1, 100);
+        assert_eq!(budget.permit_beside(client(1), 100).try_hold(600), Err(Refusal::Share));
+    }
+
+    #[test]
+    fn much_leaves_room_for_little() {
+        let budget = Arc::new(Budget::new(1600));
+        let mut much = budget.permit(client(1));
+        assert_eq!(much.largest(), 1500);
+        assert_eq!(much.try_reserve(1501), Err(Refusal::Full));
+        assert_eq!(much.try_reserve(1500), Ok(()));
+        assert_eq!(budget.permit(client(2)).try_reserve(26), Err(Refusal::Full));
+        assert_eq!(budget.permit(client(2)).try_reserve(25), Ok(()));
+    }
+
+    #[test]
+    fn the_slow_are_hurried_where_half_is_held_or_somebody_found_no_room() {
+        let budget = Arc::new(Budget::new(1000));
+        let little = holding(&budget, 1, 499);
+        assert!(!budget.is_tight());
+        let _more = holding(&budget, 2, 1);
+        assert!(budget.is_tight());
+        drop(little);
+        assert!(!budget.is_tight());
+        assert_eq!(budget.permit(client(3)).try_hold(1000), Err(Refusal::Full));
+        assert!(budget.is_tight());
     }
 }

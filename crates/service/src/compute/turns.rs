@@ -31,7 +31,7 @@ pub(super) type Job = Box<dyn FnOnce(Turn) -> Option<Turn> + Send>;
 /// The turns of some workers: threads that go from one job to the next, since to wake another for each would cost as much as a short flight.
 #[derive(Debug)]
 pub(super) struct Turns {
-    state: Mutex<State>,
+    queue: Mutex<Queue>,
     /// Whether a short job waits.
     short_waits: AtomicBool,
     /// How much longer short jobs have computed, while long ones waited, than long ones have since, ns.
@@ -39,7 +39,7 @@ pub(super) struct Turns {
     threads: Handle,
 }
 
-struct State {
+struct Queue {
     /// Turns that nobody has.
     free: usize,
     /// Jobs that have not begun, the next one first.
@@ -48,16 +48,16 @@ struct State {
     long: VecDeque<Sender<Turn>>,
 }
 
-impl fmt::Debug for State {
+impl fmt::Debug for Queue {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { free, short, long } = self;
-        f.debug_struct("State").field("free", free).field("short", &short.len()).field("long", &long.len()).finish()
+        f.debug_struct("Queue").field("free", free).field("short", &short.len()).field("long", &long.len()).finish()
     }
 }
 
-/// Which place a job asks for that has been suspended.
+/// Which position among the suspended a job asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Position {
     /// Behind the others.
     Last,
     /// Before the others, as it has had a turn before and given it to a short job.
@@ -90,27 +90,27 @@ enum Granted {
 impl Turns {
     /// The turns of so many workers, which are threads of a runtime.
     pub(super) fn new(workers: usize, threads: Handle) -> Arc<Self> {
-        let state = State { free: workers, short: VecDeque::new(), long: VecDeque::new() };
+        let queue = Queue { free: workers, short: VecDeque::new(), long: VecDeque::new() };
         let (short_waits, lead) = (AtomicBool::new(false), AtomicU64::new(0));
-        Arc::new(Self { state: Mutex::new(state), short_waits, lead, threads })
+        Arc::new(Self { queue: Mutex::new(queue), short_waits, lead, threads })
     }
 
     /// Has a job run when its turn comes.
     pub(super) fn submit(self: &Arc<Self>, job: Job) {
-        let mut state = self.lock();
-        state.short.push_back(job);
-        self.hand_out(state);
+        let mut queue = self.lock();
+        queue.short.push_back(job);
+        self.hand_out(queue);
     }
 
     /// Asks for a turn again.
-    pub(super) fn ask(self: &Arc<Self>, place: Place) -> Receiver<Turn> {
+    pub(super) fn ask(self: &Arc<Self>, position: Position) -> Receiver<Turn> {
         let (sender, receiver) = channel();
-        let mut state = self.lock();
-        match place {
-            Place::Last => state.long.push_back(sender),
-            Place::First => state.long.push_front(sender),
+        let mut queue = self.lock();
+        match position {
+            Position::Last => queue.long.push_back(sender),
+            Position::First => queue.long.push_front(sender),
         }
-        self.hand_out(state);
+        self.hand_out(queue);
         receiver
     }
 
@@ -129,37 +129,37 @@ impl Turns {
     }
 
     /// A job has had its turn for so long.
-    fn count(&self, state: &State, is_long: bool, had: Duration) {
+    fn count(&self, queue: &Queue, is_long: bool, had: Duration) {
         let lead = match is_long {
             true => self.lead().saturating_sub(had),
-            false if state.long.is_empty() => return,
+            false if queue.long.is_empty() => return,
             false => self.lead() + had,
         };
         self.lead.store(u64::try_from(lead.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
     }
 
     /// Gives what turns there are to those who wait.
-    fn hand_out(self: &Arc<Self>, mut state: MutexGuard<State>) {
+    fn hand_out(self: &Arc<Self>, mut queue: MutexGuard<Queue>) {
         let mut begun = Vec::new();
-        while state.free > 0
-            && let Some(granted) = self.grant(&mut state)
+        while queue.free > 0
+            && let Some(granted) = self.grant(&mut queue)
         {
             if let Granted::Begun(job, turn) = granted {
                 begun.push((job, turn));
             }
         }
-        self.note(&state);
-        drop(state);
+        self.note(&queue);
+        drop(queue);
         for (job, turn) in begun {
             self.threads.spawn_blocking(move || work(job, turn));
         }
     }
 
     /// Gives one of the free turns to the next who waits, if anybody does.
-    fn grant(self: &Arc<Self>, state: &mut State) -> Option<Granted> {
+    fn grant(self: &Arc<Self>, queue: &mut Queue) -> Option<Granted> {
         let turn = |is_long| Turn { turns: Some(Arc::clone(self)), is_long, since: Instant::now() };
         let granted = loop {
-            match state.next(self.lead() > LEAD) {
+            match queue.next(self.lead() > LEAD) {
                 Some(Next::Short(job)) => break Some(Granted::Begun(job, turn(false))),
                 Some(Next::Long(suspended)) => match suspended.send(turn(true)) {
                     Ok(()) => break Some(Granted::Resumed),
@@ -169,22 +169,22 @@ impl Turns {
                 None => break None,
             }
         };
-        state.free -= usize::from(granted.is_some());
-        self.note(state);
+        queue.free -= usize::from(granted.is_some());
+        self.note(queue);
         granted
     }
 
-    /// Notes whether a short job waits, for those who ask without waiting for the state.
-    fn note(&self, state: &State) {
-        self.short_waits.store(!state.short.is_empty(), Ordering::Relaxed);
+    /// Notes whether a short job waits, for those who ask without the lock.
+    fn note(&self, queue: &Queue) {
+        self.short_waits.store(!queue.short.is_empty(), Ordering::Relaxed);
     }
 
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl State {
+impl Queue {
     fn next(&mut self, long_first: bool) -> Option<Next> {
         if long_first && let Some(suspended) = self.long.pop_front() {
             return Some(Next::Long(suspended));
@@ -197,10 +197,10 @@ impl Turn {
     /// The next job that is to begin, if it is the turn of one; else the turn has gone on.
     fn next_job(mut self) -> Option<(Job, Self)> {
         let turns = self.turns.take()?;
-        let mut state = turns.lock();
-        turns.count(&state, self.is_long, self.since.elapsed());
-        state.free += 1;
-        match turns.grant(&mut state) {
+        let mut queue = turns.lock();
+        turns.count(&queue, self.is_long, self.since.elapsed());
+        queue.free += 1;
+        match turns.grant(&mut queue) {
             Some(Granted::Begun(job, turn)) => Some((job, turn)),
             Some(Granted::Resumed) | None => None,
         }
@@ -210,10 +210,10 @@ impl Turn {
 impl Drop for Turn {
     fn drop(&mut self) {
         if let Some(turns) = self.turns.take() {
-            let mut state = turns.lock();
-            turns.count(&state, self.is_long, self.since.elapsed());
-            state.free += 1;
-            turns.hand_out(state);
+            let mut queue = turns.lock();
+            turns.count(&queue, self.is_long, self.since.elapsed());
+            queue.free += 1;
+            turns.hand_out(queue);
         }
     }
 }
@@ -232,7 +232,7 @@ mod tests {
 
     use tokio::runtime::{Builder, Runtime};
 
-    use super::{LEAST_LONG, LONG, Place, Turn, Turns, long};
+    use super::{LEAST_LONG, LONG, Position, Turn, Turns, long};
 
     #[test]
     fn a_job_is_long_the_sooner_the_more_are_suspended() {
@@ -241,39 +241,50 @@ mod tests {
         assert_eq!([long(1, 64), long(0, 64), long(0, 0)], [LEAST_LONG; 3]);
     }
 
-    /// The turns of one worker, and the threads of which it is one.
-    fn one() -> (Arc<Turns>, Runtime) {
-        let threads = Builder::new_current_thread().max_blocking_threads(4).build().unwrap();
-        (Turns::new(1, threads.handle().clone()), threads)
+    /// The turns of one worker, and what its jobs say.
+    struct Worker {
+        turns: Arc<Turns>,
+        _threads: Runtime,
+        saying: mpsc::Sender<&'static str>,
+        said: mpsc::Receiver<&'static str>,
     }
 
-    /// Submits a job that says its name, and keeps its turn until it is told to go on.
-    fn submit(turns: &Arc<Turns>, name: &'static str, said: &mpsc::Sender<&'static str>) -> mpsc::Sender<()> {
-        let (go_on, told) = mpsc::channel();
-        let said = said.clone();
-        turns.submit(Box::new(move |turn| {
-            said.send(name).unwrap();
-            // An error: it is told so by dropping the other end.
-            let _ = told.recv();
-            Some(turn)
-        }));
-        go_on
+    impl Worker {
+        /// A worker that is busy with a job, until the other end of that is dropped.
+        fn busy() -> (Self, mpsc::Sender<()>) {
+            let threads = Builder::new_current_thread().max_blocking_threads(4).build().unwrap();
+            let (saying, said) = mpsc::channel();
+            let worker = Self { turns: Turns::new(1, threads.handle().clone()), _threads: threads, saying, said };
+            let first = worker.submit("first");
+            assert_eq!(worker.said.recv().unwrap(), "first");
+            (worker, first)
+        }
+
+        /// Submits a job that says its name, and keeps its turn until the other end is dropped.
+        fn submit(&self, name: &'static str) -> mpsc::Sender<()> {
+            let (keeping, kept) = mpsc::channel();
+            let saying = self.saying.clone();
+            self.turns.submit(Box::new(move |turn| {
+                saying.send(name).unwrap();
+                let _ = kept.recv();
+                Some(turn)
+            }));
+            keeping
+        }
     }
 
     #[test]
     fn short_jobs_are_next_and_a_long_one_that_gave_way_is_the_first_of_the_long() {
-        let (turns, _threads) = one();
-        let (said, heard) = mpsc::channel();
-        let first = submit(&turns, "first", &said);
-        assert_eq!(heard.recv().unwrap(), "first");
+        let (worker, first) = Worker::busy();
+        let turns = &worker.turns;
         assert!(!turns.are_wanted());
-        let [mut last, before] = [Place::Last, Place::First].map(|place| turns.ask(place));
-        let [second, third] = ["second", "third"].map(|name| submit(&turns, name, &said));
+        let [mut last, before] = [Position::Last, Position::First].map(|place| turns.ask(place));
+        let [second, third] = ["second", "third"].map(|name| worker.submit(name));
         assert!(turns.are_wanted());
         drop(first);
-        assert_eq!(heard.recv().unwrap(), "second");
+        assert_eq!(worker.said.recv().unwrap(), "second");
         drop(second);
-        assert_eq!(heard.recv().unwrap(), "third");
+        assert_eq!(worker.said.recv().unwrap(), "third");
         assert!(!turns.are_wanted());
         drop(third);
         let turn: Turn = before.blocking_recv().unwrap();
@@ -284,11 +295,9 @@ mod tests {
 
     #[test]
     fn long_jobs_have_half_of_the_time() {
-        let (turns, _threads) = one();
-        let (said, heard) = mpsc::channel();
-        let first = submit(&turns, "first", &said);
-        assert_eq!(heard.recv().unwrap(), "first");
-        let (_second, long) = (submit(&turns, "second", &said), turns.ask(Place::Last));
+        let (worker, first) = Worker::busy();
+        let turns = &worker.turns;
+        let (_second, long) = (worker.submit("second"), turns.ask(Position::Last));
         let are_due = |had| turns.are_due(Duration::from_millis(had));
         assert!(are_due(0));
         turns.count(&turns.lock(), false, Duration::from_millis(10));
@@ -296,28 +305,26 @@ mod tests {
         assert!(!are_due(9));
         drop(first);
         let turn = long.blocking_recv().unwrap();
-        assert!(heard.try_recv().is_err());
+        assert!(worker.said.try_recv().is_err());
         assert!(!are_due(9));
         turns.count(&turns.lock(), true, Duration::from_secs(1));
         assert!(are_due(0));
         drop(turn);
-        assert_eq!(heard.recv().unwrap(), "second");
+        assert_eq!(worker.said.recv().unwrap(), "second");
     }
 
     #[test]
     fn a_turn_passes_those_by_who_have_gone() {
-        let (turns, _threads) = one();
-        let (said, heard) = mpsc::channel();
-        let first = submit(&turns, "first", &said);
-        assert_eq!(heard.recv().unwrap(), "first");
-        drop(turns.ask(Place::Last));
-        let given = turns.ask(Place::Last);
-        let last = turns.ask(Place::Last);
+        let (worker, first) = Worker::busy();
+        let turns = &worker.turns;
+        drop(turns.ask(Position::Last));
+        let given = turns.ask(Position::Last);
+        let last = turns.ask(Position::Last);
         drop(first);
         // It was given, and not taken.
         drop(given);
         drop(last.blocking_recv().unwrap());
-        let _second = submit(&turns, "second", &said);
-        assert_eq!(heard.recv().unwrap(), "second");
+        let _second = worker.submit("second");
+        assert_eq!(worker.said.recv().unwrap(), "second");
     }
 }

@@ -3,7 +3,7 @@ import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
 import { createInterface } from 'node:readline';
 import { type Browser, type BrowserContextOptions, chromium, type Page } from 'playwright-core';
-import { expect } from 'vitest';
+import { afterAll, beforeAll, expect } from 'vitest';
 import type { Case } from '../../src/api';
 
 export const ROOT = new URL('../../../../../', import.meta.url);
@@ -42,6 +42,21 @@ export async function serve(): Promise<Service> {
 /** The Chromium that `tests/setup` found, or another one. */
 export function launch(): Promise<Browser> {
   return chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--disable-quic'] });
+}
+
+/** The service and the browser of a file of tests that has called `prepare`. */
+export let service: Service;
+export let browser: Browser;
+
+/** Starts the service and the browser before the tests of a file, and ends them afterwards. */
+export function prepare(): void {
+  beforeAll(async () => {
+    [service, browser] = await Promise.all([serve(), launch()]);
+  });
+  afterAll(async () => {
+    await browser?.close();
+    await service?.stop();
+  });
 }
 
 /** A page of the service, and what it asked for and complained of meanwhile. */

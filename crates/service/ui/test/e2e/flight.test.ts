@@ -1,19 +1,8 @@
-import type { Browser } from 'playwright-core';
-import { afterAll, beforeAll, expect, it } from 'vitest';
+import { expect, it } from 'vitest';
 import { toFragment } from '../../src/link';
-import { ask, example, launch, type Opened, open, type Service, serve } from './browser';
+import { ask, browser, example, type Opened, open, prepare, service } from './browser';
 
-let service: Service;
-let browser: Browser;
-
-beforeAll(async () => {
-  [service, browser] = await Promise.all([serve(), launch()]);
-});
-
-afterAll(async () => {
-  await browser?.close();
-  await service?.stop();
-});
+prepare();
 
 async function on(name: string): Promise<Opened> {
   return open(browser, `${service.address}/${await toFragment(example(name))}`);

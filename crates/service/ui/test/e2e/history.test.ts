@@ -1,20 +1,10 @@
-import type { Browser, Page } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import type { Page } from 'playwright-core';
+import { describe, expect, it } from 'vitest';
 import type { Case } from '../../src/api';
 import { fromFragment, toFragment } from '../../src/link';
-import { example, figure, launch, open, type Service, serve } from './browser';
+import { browser, example, figure, open, prepare, service } from './browser';
 
-let service: Service;
-let browser: Browser;
-
-beforeAll(async () => {
-  [service, browser] = await Promise.all([serve(), launch()]);
-});
-
-afterAll(async () => {
-  await browser?.close();
-  await service?.stop();
-});
+prepare();
 
 async function on(tree: Case): Promise<Page> {
   return (await open(browser, `${service.address}/${await toFragment(tree)}`)).page;

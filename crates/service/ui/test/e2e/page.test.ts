@@ -1,23 +1,12 @@
-import type { Browser } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { describe, expect, it } from 'vitest';
 import type { Case } from '../../src/api';
 import { figuresOf, number } from '../../src/figures';
 import { flightOf } from '../../src/flight';
 import { STATES } from '../../src/form/fields';
 import { fromFragment, toFragment } from '../../src/link';
-import { ask, example, figure, launch, type Opened, open, type Service, serve, shows, source } from './browser';
+import { ask, browser, example, figure, type Opened, open, prepare, service, shows, source } from './browser';
 
-let service: Service;
-let browser: Browser;
-
-beforeAll(async () => {
-  [service, browser] = await Promise.all([serve(), launch()]);
-});
-
-afterAll(async () => {
-  await browser?.close();
-  await service?.stop();
-});
+prepare();
 
 /** Opens the page on a case. */
 async function on(tree: Case, options = {}): Promise<Opened> {

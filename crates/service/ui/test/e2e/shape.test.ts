@@ -1,21 +1,10 @@
 import { deflateRawSync } from 'node:zlib';
-import type { Browser } from 'playwright-core';
-import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { describe, expect, it } from 'vitest';
 import type { Case } from '../../src/api';
 import { fromFragment, toFragment } from '../../src/link';
-import { example, figure, launch, type Opened, open, type Service, serve } from './browser';
+import { browser, example, figure, type Opened, open, prepare, service } from './browser';
 
-let service: Service;
-let browser: Browser;
-
-beforeAll(async () => {
-  [service, browser] = await Promise.all([serve(), launch()]);
-});
-
-afterAll(async () => {
-  await browser?.close();
-  await service?.stop();
-});
+prepare();
 
 /** A case of which a few parts are others. */
 function like(parts: object): string {
