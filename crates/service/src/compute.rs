@@ -221,8 +221,9 @@ impl Compute {
             }
             let result = task.run(&mut job);
             let turn = task.take_turn();
-            // It is counted before it is known to be over.
+            // It is counted, and what it held given back, before it is known to be over.
             drop(task);
+            drop(job);
             // An error: nobody waits.
             let _ = done.send(result);
             turn
