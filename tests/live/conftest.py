@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-BINARY = os.environ.get("REENTRY", str(Path(__file__).parents[2] / "target/release/reentry"))
+# As an absolute path: some tests run it in a folder of their own.
+BINARY = os.path.abspath(os.environ.get("REENTRY", Path(__file__).parents[2] / "target/release/reentry"))
 # How long a thing may take before it counts as never, s: the machine may be busy.
 PATIENCE = 60.0
 

@@ -20,8 +20,9 @@ const GREATEST_HEALTH_P99: f64 = 20.0;
 const LONGEST_RECOVERY: f64 = 1.0;
 /// How many times its unloaded value the median of short requests may be when all is as before.
 const CALM: f64 = 2.0;
-/// How often a worker may hold the largest answer: as rows, as a text that grows, and as one that is sent.
-const ANSWER_COPIES: usize = 4;
+/// How often the largest answer may be held for each worker: as rows, as a text that grows, which is twice where it is moved, and as those
+/// that were computed before, while their clients read them.
+const ANSWER_COPIES: usize = 8;
 /// Queues that are drawn to see what the worst of a hundred is worth.
 const QUEUES: usize = 10_000;
 /// Wrong answers that are printed of a flood.

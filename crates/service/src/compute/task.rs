@@ -83,8 +83,6 @@ pub struct Task {
 #[derive(Debug)]
 pub(super) struct Progress {
     turn: Option<Turn>,
-    /// The instant from which it has its turn.
-    since: Instant,
     /// The instant at which it looks next whether it is long.
     look: Instant,
     /// The processor time of its thread when it began, once it has.
@@ -110,7 +108,6 @@ impl Progress {
         let now = Instant::now();
         Self {
             turn: None,
-            since: now,
             look: now,
             begin: None,
             is_long: false,
@@ -156,7 +153,6 @@ impl Task {
         self.call.begun.notify_one();
         let mut progress = self.lock();
         progress.turn = Some(turn);
-        progress.since = Instant::now();
         progress.begin = Some(processor_time());
     }
 
@@ -223,13 +219,14 @@ impl Task {
     fn give_way(&self) {
         let mut progress = self.lock();
         let now = Instant::now();
-        let was_long = progress.is_long;
-        if !was_long && now >= progress.look {
+        if !progress.is_long && now >= progress.look {
             progress.look = now + LOOK;
-            progress.is_long = progress.computed() >= long(self.suspended.available_permits(), self.most_suspended);
+            let places = self.suspended.available_permits().saturating_sub(self.turns.given_up(now.into_std()));
+            progress.is_long = progress.computed() >= long(places, self.most_suspended);
         }
-        if progress.is_long && self.turns.are_due(now - progress.since) {
-            let position = if was_long { Position::First } else { Position::Last };
+        // What is long only now gives the turn of a short one back, to whoever is next.
+        if progress.is_long && (!progress.was_suspended || self.turns.are_due()) {
+            let position = if progress.was_suspended { Position::First } else { Position::Last };
             self.suspend(&mut progress, position, Duration::ZERO);
         }
     }
@@ -255,7 +252,6 @@ impl Task {
             }
         });
         self.metrics.job_resumed();
-        progress.since = Instant::now();
     }
 
     fn lock(&self) -> MutexGuard<'_, Progress> {
@@ -314,6 +310,9 @@ impl Drop for Task {
         if self.call.interrupt.load(Ordering::Relaxed) && !progress.was_refused {
             let is_late = self.call.is_late.load(Ordering::Relaxed);
             self.metrics.job_cancelled(self.route, if is_late { "deadline" } else { "disconnect" });
+            if progress.is_long {
+                self.turns.note_given_up(Instant::now().into_std());
+            }
         }
         // It is dropped by the thread on which it ran.
         let computed = progress.computed();

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -22,6 +22,13 @@ pub(super) fn long(places: usize, of_all: usize) -> Duration {
     (LONG / of_all.max(1)).saturating_mul(places).max(LEAST_LONG)
 }
 
+/// For so long it is known that a long job did not come to its end. Who sent it may send it again, and many of them come at once when
+/// their time has run out at once.
+const KNOWN: Duration = Duration::from_secs(10);
+
+/// Of how many that is known: as many as may be suspended.
+const MOST_KNOWN: usize = super::MOST_SUSPENDED;
+
 /// What short jobs may compute beyond the half that is theirs, while long ones wait.
 const LEAD: Duration = Duration::from_millis(5);
 
@@ -34,8 +41,8 @@ pub(super) struct Turns {
     queue: Mutex<Queue>,
     /// Whether a short job waits.
     short_waits: AtomicBool,
-    /// How much longer short jobs have computed, while long ones waited, than long ones have since, ns.
-    lead: AtomicU64,
+    /// When long jobs were given up, the earliest first.
+    given_up: Mutex<VecDeque<Instant>>,
     threads: Handle,
 }
 
@@ -44,14 +51,24 @@ struct Queue {
     free: usize,
     /// Jobs that have not begun, the next one first.
     short: VecDeque<Job>,
+    /// Turns of jobs that have not been suspended.
+    short_running: u32,
+    /// Turns of jobs that have.
+    long_running: u32,
+    /// How much longer short jobs have computed, while long ones waited, than long ones have.
+    lead: Duration,
+    /// The instant until when that is counted.
+    counted: Instant,
     /// Jobs that are suspended, the next one first: they are finished one after another, since they would all come late if they took turns.
     long: VecDeque<Sender<Turn>>,
 }
 
 impl fmt::Debug for Queue {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { free, short, long } = self;
-        f.debug_struct("Queue").field("free", free).field("short", &short.len()).field("long", &long.len()).finish()
+        let Self { free, short, long, lead, .. } = self;
+        let mut fields = f.debug_struct("Queue");
+        fields.field("free", free).field("short", &short.len()).field("long", &long.len()).field("lead", lead);
+        fields.finish_non_exhaustive()
     }
 }
 
@@ -70,7 +87,6 @@ pub(super) struct Turn {
     /// None once it has gone on.
     turns: Option<Arc<Turns>>,
     is_long: bool,
-    since: Instant,
 }
 
 /// Who is next.
@@ -90,9 +106,17 @@ enum Granted {
 impl Turns {
     /// The turns of so many workers, which are threads of a runtime.
     pub(super) fn new(workers: usize, threads: Handle) -> Arc<Self> {
-        let queue = Queue { free: workers, short: VecDeque::new(), long: VecDeque::new() };
-        let (short_waits, lead) = (AtomicBool::new(false), AtomicU64::new(0));
-        Arc::new(Self { queue: Mutex::new(queue), short_waits, lead, threads })
+        let queue = Queue {
+            free: workers,
+            short: VecDeque::new(),
+            short_running: 0,
+            long_running: 0,
+            lead: Duration::ZERO,
+            counted: Instant::now(),
+            long: VecDeque::new(),
+        };
+        let (queue, short_waits, given_up) = (Mutex::new(queue), AtomicBool::new(false), Mutex::default());
+        Arc::new(Self { queue, short_waits, given_up, threads })
     }
 
     /// Has a job run when its turn comes.
@@ -119,23 +143,31 @@ impl Turns {
         self.short_waits.load(Ordering::Relaxed)
     }
 
-    /// Whether a long job that has had its turn for so long is to give it to a short one.
-    pub(super) fn are_due(&self, had: Duration) -> bool {
-        self.are_wanted() && self.lead() <= had
+    /// Whether a long job is to give its turn to a short one: where one waits, and they have no lead.
+    pub(super) fn are_due(&self) -> bool {
+        self.are_wanted() && {
+            let mut queue = self.lock();
+            queue.count(Instant::now());
+            queue.lead.is_zero()
+        }
     }
 
-    fn lead(&self) -> Duration {
-        Duration::from_nanos(self.lead.load(Ordering::Relaxed))
+    /// A long job was given up at an instant.
+    pub(super) fn note_given_up(&self, at: Instant) {
+        let mut given_up = self.given_up.lock().unwrap_or_else(PoisonError::into_inner);
+        if given_up.len() == MOST_KNOWN {
+            given_up.pop_front();
+        }
+        given_up.push_back(at);
     }
 
-    /// A job has had its turn for so long.
-    fn count(&self, queue: &Queue, is_long: bool, had: Duration) {
-        let lead = match is_long {
-            true => self.lead().saturating_sub(had),
-            false if queue.long.is_empty() => return,
-            false => self.lead() + had,
-        };
-        self.lead.store(u64::try_from(lead.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
+    /// How many long jobs were given up shortly before an instant.
+    pub(super) fn given_up(&self, at: Instant) -> usize {
+        let mut given_up = self.given_up.lock().unwrap_or_else(PoisonError::into_inner);
+        while given_up.front().is_some_and(|&then| at.duration_since(then) > KNOWN) {
+            given_up.pop_front();
+        }
+        given_up.len()
     }
 
     /// Gives what turns there are to those who wait.
@@ -157,9 +189,10 @@ impl Turns {
 
     /// Gives one of the free turns to the next who waits, if anybody does.
     fn grant(self: &Arc<Self>, queue: &mut Queue) -> Option<Granted> {
-        let turn = |is_long| Turn { turns: Some(Arc::clone(self)), is_long, since: Instant::now() };
+        let turn = |is_long| Turn { turns: Some(Arc::clone(self)), is_long };
+        queue.count(Instant::now());
         let granted = loop {
-            match queue.next(self.lead() > LEAD) {
+            match queue.next() {
                 Some(Next::Short(job)) => break Some(Granted::Begun(job, turn(false))),
                 Some(Next::Long(suspended)) => match suspended.send(turn(true)) {
                     Ok(()) => break Some(Granted::Resumed),
@@ -170,6 +203,11 @@ impl Turns {
             }
         };
         queue.free -= usize::from(granted.is_some());
+        match granted {
+            Some(Granted::Begun(..)) => queue.short_running += 1,
+            Some(Granted::Resumed) => queue.long_running += 1,
+            None => {}
+        }
         self.note(queue);
         granted
     }
@@ -185,8 +223,24 @@ impl Turns {
 }
 
 impl Queue {
-    fn next(&mut self, long_first: bool) -> Option<Next> {
-        if long_first && let Some(suspended) = self.long.pop_front() {
+    /// Counts what has been computed until now: what the long ones have is taken off what the short ones are ahead.
+    fn count(&mut self, now: Instant) {
+        let time = now.saturating_duration_since(self.counted);
+        let short = if self.long.is_empty() { Duration::ZERO } else { time * self.short_running };
+        self.lead = (self.lead + short).saturating_sub(time * self.long_running);
+        self.counted = now;
+    }
+
+    /// Takes a turn back.
+    fn release(&mut self, is_long: bool) {
+        self.count(Instant::now());
+        let running = if is_long { &mut self.long_running } else { &mut self.short_running };
+        *running -= 1;
+        self.free += 1;
+    }
+
+    fn next(&mut self) -> Option<Next> {
+        if self.lead > LEAD && let Some(suspended) = self.long.pop_front() {
             return Some(Next::Long(suspended));
         }
         self.short.pop_front().map(Next::Short).or_else(|| self.long.pop_front().map(Next::Long))
@@ -198,8 +252,7 @@ impl Turn {
     fn next_job(mut self) -> Option<(Job, Self)> {
         let turns = self.turns.take()?;
         let mut queue = turns.lock();
-        turns.count(&queue, self.is_long, self.since.elapsed());
-        queue.free += 1;
+        queue.release(self.is_long);
         match turns.grant(&mut queue) {
             Some(Granted::Begun(job, turn)) => Some((job, turn)),
             Some(Granted::Resumed) | None => None,
@@ -211,8 +264,7 @@ impl Drop for Turn {
     fn drop(&mut self) {
         if let Some(turns) = self.turns.take() {
             let mut queue = turns.lock();
-            turns.count(&queue, self.is_long, self.since.elapsed());
-            queue.free += 1;
+            queue.release(self.is_long);
             turns.hand_out(queue);
         }
     }
@@ -228,17 +280,35 @@ fn work(mut job: Job, mut turn: Turn) {
 #[cfg(test)]
 mod tests {
     use std::sync::{Arc, mpsc};
-    use std::time::Duration;
+    use std::thread;
+    use std::time::{Duration, Instant};
 
     use tokio::runtime::{Builder, Runtime};
+    use tokio::sync::oneshot::channel;
 
-    use super::{LEAST_LONG, LONG, Position, Turns, long};
+    use super::{KNOWN, LEAD, LEAST_LONG, LONG, MOST_KNOWN, Position, Queue, Turns, long};
 
     #[test]
     fn a_job_is_long_the_sooner_the_more_are_suspended() {
         assert_eq!(long(64, 64), LONG);
         assert_eq!(long(32, 64), LONG / 2);
         assert_eq!([long(1, 64), long(0, 64), long(0, 0)], [LEAST_LONG; 3]);
+    }
+
+    #[test]
+    fn long_jobs_that_were_given_up_are_forgotten() {
+        let threads = Builder::new_current_thread().build().unwrap();
+        let turns = Turns::new(1, threads.handle().clone());
+        let start = Instant::now();
+        turns.note_given_up(start);
+        turns.note_given_up(start + KNOWN / 2);
+        assert_eq!(turns.given_up(start + KNOWN), 2);
+        assert_eq!(turns.given_up(start + KNOWN + Duration::from_nanos(1)), 1);
+        for _ in 0..=MOST_KNOWN {
+            turns.note_given_up(start + KNOWN);
+        }
+        assert_eq!(turns.given_up(start + KNOWN), MOST_KNOWN);
+        assert_eq!(turns.given_up(start + 3 * KNOWN), 0);
     }
 
     /// The turns of one worker, and what its jobs say.
@@ -303,19 +373,45 @@ mod tests {
         let (worker, first) = Worker::busy();
         let turns = &worker.turns;
         let (_second, long) = (worker.submit("second"), turns.ask(Position::Last));
-        let are_due = |had| turns.are_due(Duration::from_millis(had));
-        assert!(are_due(0));
-        turns.count(&turns.lock(), false, Duration::from_millis(10));
-        // The lead of the short ones is to be made up for.
-        assert!(!are_due(9));
+        let lead = |change: &dyn Fn(&mut Queue)| {
+            let mut queue = turns.lock();
+            queue.count(Instant::now());
+            change(&mut queue);
+            queue.lead
+        };
+        // The first one computes, while a long one waits.
+        assert!(!turns.are_due());
+        let early = lead(&|_| {});
+        thread::sleep(2 * LEAD);
+        assert!(lead(&|_| {}) >= early + 2 * LEAD);
         drop(first);
         let turn = long.blocking_recv().unwrap();
         assert!(worker.said.try_recv().is_err());
-        assert!(!are_due(9));
-        turns.count(&turns.lock(), true, Duration::from_secs(1));
-        assert!(are_due(0));
+        // The lead of the short ones is to be made up for.
+        lead(&|queue| queue.lead = Duration::from_secs(1000));
+        assert!(!turns.are_due());
+        thread::sleep(LEAD);
+        assert!(lead(&|_| {}) <= Duration::from_secs(1000) - LEAD);
+        lead(&|queue| queue.lead = Duration::ZERO);
+        assert!(turns.are_due());
         drop(turn);
         assert_eq!(worker.said.recv().unwrap(), "second");
+    }
+
+    #[test]
+    fn short_jobs_beside_a_long_one_have_no_lead() {
+        let threads = Builder::new_current_thread().build().unwrap();
+        let turns = Turns::new(2, threads.handle().clone());
+        let _long = turns.ask(Position::Last).blocking_recv().unwrap();
+        let mut queue = turns.lock();
+        queue.long.push_back(channel().0);
+        queue.short_running = 1;
+        let now = queue.counted;
+        queue.count(now + Duration::from_secs(1));
+        assert_eq!(queue.lead, Duration::ZERO);
+        queue.short_running = 3;
+        queue.count(now + Duration::from_secs(3));
+        assert_eq!(queue.lead, Duration::from_secs(4));
     }
 
     #[test]
