@@ -268,8 +268,9 @@ impl Pool {
     /// As many workers, and as many jobs beside them that may be suspended.
     fn new(name: &str, workers: usize, suspended: usize) -> std::io::Result<Self> {
         let suspended = suspended.min(MOST_SUSPENDED);
-        let threads =
-            Builder::new_current_thread().max_blocking_threads(workers + suspended).thread_name(name).build()?;
+        let mut threads = Builder::new_current_thread();
+        threads.max_blocking_threads(workers + suspended).thread_name(name).on_thread_start(let_others_go_first);
+        let threads = threads.build()?;
         Ok(Self {
             turns: Turns::new(workers, threads.handle().clone()),
             threads: Some(threads),
@@ -278,6 +279,19 @@ impl Pool {
         })
     }
 }
+
+/// Has the threads that talk to clients go before the one that calls, where all processors are busy: they need little, and need it soon.
+/// Linux alone has priorities of threads.
+fn let_others_go_first() {
+    #[cfg(target_os = "linux")]
+    if let Err(error) = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICE) {
+        tracing::debug!("a thread that computes keeps its priority: {error}");
+    }
+}
+
+/// The priority of threads that compute; that of the others is 0, and less goes first.
+#[cfg(target_os = "linux")]
+const NICE: i32 = 5;
 
 /// Jobs that may be suspended at once, each of which has a thread.
 const MOST_SUSPENDED: usize = 256;
