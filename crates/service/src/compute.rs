@@ -7,6 +7,7 @@ mod slots;
 mod task;
 mod turns;
 
+use std::sync::atomic::AtomicU32;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -208,6 +209,7 @@ impl Compute {
             suspended: Arc::clone(&pool.suspended),
             most_suspended: pool.most_suspended,
             asked: Instant::now(),
+            polls: AtomicU32::new(0),
             progress: Mutex::new(Progress::new(place, self.memory.answers.permit(client))),
             metrics: Arc::clone(&self.metrics),
             rate_limit: self.rate_limit.clone(),
@@ -268,9 +270,8 @@ impl Pool {
     /// As many workers, and as many jobs beside them that may be suspended.
     fn new(name: &str, workers: usize, suspended: usize) -> std::io::Result<Self> {
         let suspended = suspended.min(MOST_SUSPENDED);
-        let mut threads = Builder::new_current_thread();
-        threads.max_blocking_threads(workers + suspended).thread_name(name).on_thread_start(let_others_go_first);
-        let threads = threads.build()?;
+        let threads =
+            Builder::new_current_thread().max_blocking_threads(workers + suspended).thread_name(name).build()?;
         Ok(Self {
             turns: Turns::new(workers, threads.handle().clone()),
             threads: Some(threads),
@@ -279,19 +280,6 @@ impl Pool {
         })
     }
 }
-
-/// Has the threads that talk to clients go before the one that calls, where all processors are busy: they need little, and need it soon.
-/// Linux alone has priorities of threads.
-fn let_others_go_first() {
-    #[cfg(target_os = "linux")]
-    if let Err(error) = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICE) {
-        tracing::debug!("a thread that computes keeps its priority: {error}");
-    }
-}
-
-/// The priority of threads that compute; that of the others is 0, and less goes first.
-#[cfg(target_os = "linux")]
-const NICE: i32 = 5;
 
 /// Jobs that may be suspended at once, each of which has a thread.
 const MOST_SUSPENDED: usize = 256;

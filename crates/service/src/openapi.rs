@@ -44,14 +44,18 @@ const ALTERNATIVES: [(&str, &[&str]); 10] = [
     ("TableWind", &["east", "speed"]),
 ];
 
+/// How a body may be sent.
+const BODY: &str = "With `Content-Encoding: gzip` or `zstd` it may come compressed; the greatest length of a body then is that of its text.";
+
 /// Every failure that every endpoint may answer with.
-const FAILURES: [(&str, &str); 12] = [
+const FAILURES: [(&str, &str); 14] = [
     ("400", "Not JSON, duplicate keys, an unknown query parameter, or a head that is no request."),
     ("404", "There is nothing at this path."),
     ("405", "The path does not know this method."),
     ("406", "None of the representations that the client accepts."),
     ("408", "The body did not come in the time allowed, or too slowly where memory is short."),
     ("413", "The body is too long; of one in gzip or Zstandard, its text."),
+    ("414", "The path is too long."),
     ("415", "The body is not declared as JSON, or comes in another `Content-Encoding` than gzip or zstd."),
     ("422", "Not a valid case, or a flight that cannot be finished; every fault with its pointer."),
     (
@@ -59,6 +63,7 @@ const FAILURES: [(&str, &str); 12] = [
         "More than this client may ask for: requests and computing where there is a rate limit, half of the memory or of the batches; \
          `Retry-After` says when to come back.",
     ),
+    ("431", "The head of the request is too large."),
     ("500", "A fault of the service."),
     ("503", "Busy; `Retry-After` says when to come back."),
     ("504", "The time allowed ran out."),
@@ -88,10 +93,13 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
                 // A request without a body has no fault of one.
                 add_failures(operation, |status| method == "post" || !["408", "413", "415", "422"].contains(&status));
                 operation["parameters"][0]["schema"] = json!({"type": "string", "enum": formats});
+                if let Some(body) = operation.get_mut("requestBody") {
+                    body["description"] = json!(BODY);
+                }
             }
         }
         for path in ["/health/live", "/health/ready", "/metrics"] {
-            add_failures(&mut paths[path]["get"], |status| status == "405");
+            add_failures(&mut paths[path]["get"], |status| ["405", "414", "431"].contains(&status));
         }
         add_examples(paths);
         add_headers(paths);

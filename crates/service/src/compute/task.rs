@@ -1,7 +1,7 @@
 //! A job while it runs: it looks at its flag, gives way to short jobs, and holds memory.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
@@ -74,6 +74,8 @@ pub struct Task {
     pub(super) most_suspended: usize,
     /// When it was asked for.
     pub(super) asked: Instant,
+    /// How often it has looked at its flag.
+    pub(super) polls: AtomicU32,
     pub(super) progress: Mutex<Progress>,
     pub(super) metrics: Arc<Metrics>,
     pub(super) rate_limit: Option<Arc<RateLimit>>,
@@ -260,7 +262,10 @@ impl Task {
 }
 
 /// Between two looks of a job at whether it is long, while others wait.
-const LOOK: Duration = Duration::from_millis(1);
+const LOOK: Duration = Duration::from_micros(250);
+
+/// How often a long job looks at its flag, some us each, until it offers its processor to other threads.
+const POLLS: u32 = 64;
 
 /// Between two looks of a job that waits for memory.
 const PAUSE: Duration = Duration::from_millis(10);
@@ -275,6 +280,10 @@ impl Interrupt for Task {
     fn is_raised(&self) -> bool {
         if !self.is_over() && self.turns.are_wanted() {
             self.give_way();
+        }
+        if self.polls.fetch_add(1, Ordering::Relaxed).is_multiple_of(POLLS) && self.lock().was_suspended {
+            // The threads that talk to clients, and a short job that begins, would wait for the end of its time slice of some ms.
+            thread::yield_now();
         }
         self.is_over()
     }

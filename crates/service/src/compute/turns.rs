@@ -16,7 +16,7 @@ use tokio::sync::oneshot::{Receiver, Sender, channel};
 const LONG: Duration = Duration::from_millis(50);
 
 /// From here on, where as many are suspended as may be.
-const LEAST_LONG: Duration = Duration::from_millis(2);
+const LEAST_LONG: Duration = Duration::from_millis(1);
 
 /// From where on a job is long, where so many more may be suspended of all: the more there are, the sooner the next is known to be one.
 pub(super) fn long(places: usize, of_all: usize) -> Duration {
