@@ -257,6 +257,11 @@ def zstd(text):
         (b"GET /health/live HTTP/1.1\r\nconnection: close\r\n\r\n", 400, "malformed-request"),
         (b"GET /health/live HTTP/1.1\r\nhost: a\r\nhost: b\r\nconnection: close\r\n\r\n", 400, "malformed-request"),
         (b"GET /health/live HTTP/1.1\r\nhost: a b\r\nconnection: close\r\n\r\n", 400, "malformed-request"),
+        (
+            b"POST /simulate HTTP/1.1\r\nhost: x\r\ntransfer-encoding: gzip, chunked\r\nconnection: close\r\n\r\n0\r\n\r\n",
+            400,
+            "malformed-request",
+        ),
         (b"GET /health/live HTTP/9.9\r\nhost: x\r\n\r\n", 400, "malformed-request"),
         (b"garbage\r\n\r\n", 400, "malformed-request"),
         (b"POST /simulate HTTP/1.1\r\nhost: x\r\ncontent-length: -5\r\n\r\n", 400, "malformed-request"),

@@ -157,10 +157,12 @@ impl HttpBody for Observed {
     }
 }
 
-/// Refuses requests that came over a connection without saying once to whom they go (RFC 9112, section 3.2).
-pub async fn check_host(request: Request, next: Next) -> Response {
+/// Refuses requests that came over a connection without saying once to whom they go (RFC 9112, section 3.2), or in a coding of the transfer
+/// that is not undone here (section 6.1).
+pub async fn check_head(request: Request, next: Next) -> Response {
     let mut hosts = request.headers().get_all(header::HOST).iter();
-    let wrong = match (hosts.next(), hosts.next()) {
+    let mut codings = request.headers().get_all(header::TRANSFER_ENCODING).iter();
+    let wrong_host = match (hosts.next(), hosts.next()) {
         (Some(_), Some(_)) => Some("the request must have one Host, not several"),
         (Some(host), None) if !host.is_empty() && Authority::try_from(host.as_bytes()).is_err() => {
             Some("Host must be a name or an address, with a port or without")
@@ -168,7 +170,9 @@ pub async fn check_host(request: Request, next: Next) -> Response {
         (None, _) if request.version() > Version::HTTP_10 => Some("the request must have a Host"),
         _ => None,
     };
-    match wrong {
+    let is_chunked = codings.all(|coding| coding.as_bytes().eq_ignore_ascii_case(b"chunked"));
+    let wrong_coding = (!is_chunked).then_some("the only Transfer-Encoding that is taken is chunked");
+    match wrong_host.or(wrong_coding) {
         Some(wrong) if request.extensions().get::<Peer>().is_some() => {
             ApiError::MalformedRequest(wrong).into_response()
         }

@@ -15,7 +15,7 @@ use utoipa_axum::routes;
 use crate::config::Origins;
 use crate::endpoints::{analytic, batch, convert, docs, health, metrics, page, simulate, validation};
 use crate::error::ApiError;
-use crate::middleware::{REQUEST_ID, check_host, limit, observe, protect};
+use crate::middleware::{REQUEST_ID, check_head, limit, observe, protect};
 use crate::openapi::{self, Document};
 use crate::rate;
 use crate::state::AppState;
@@ -81,7 +81,7 @@ pub fn surrounded(routes: Router<AppState>, state: AppState) -> Router {
         })
         .layer(middleware::from_fn_with_state(state.clone(), limit))
         .layer(cors)
-        .layer(middleware::from_fn(check_host))
+        .layer(middleware::from_fn(check_head))
         .layer(middleware::from_fn(protect))
         .layer(middleware::from_fn_with_state(state.clone(), observe))
         .with_state(state)

@@ -1,7 +1,4 @@
 //! Whose turn it is to compute: short jobs come first, and long ones have half of the time at least.
-//!
-//! Of several workers one is left to jobs that have yet to come, since the next one would otherwise wait until a long one gives way and the
-//! system has changed from one thread to another, some ms.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -29,9 +26,6 @@ pub(super) fn long(places: usize, of_all: usize) -> Duration {
 /// their time has run out at once.
 const KNOWN: Duration = Duration::from_secs(10);
 
-/// For so long after a job has come, one of several workers is left to the next.
-const LEFT: Duration = Duration::from_secs(1);
-
 /// Of how many that is known: as many as may be suspended.
 const MOST_KNOWN: usize = super::MOST_SUSPENDED;
 
@@ -53,11 +47,8 @@ pub(super) struct Turns {
 }
 
 struct Queue {
-    workers: u32,
     /// Turns that nobody has.
     free: usize,
-    /// When the last job came, if any did.
-    submitted: Option<Instant>,
     /// Jobs that have not begun, the next one first.
     short: VecDeque<Job>,
     /// Turns of jobs that have not been suspended.
@@ -116,9 +107,7 @@ impl Turns {
     /// The turns of so many workers, which are threads of a runtime.
     pub(super) fn new(workers: usize, threads: Handle) -> Arc<Self> {
         let queue = Queue {
-            workers: u32::try_from(workers).unwrap_or(u32::MAX),
             free: workers,
-            submitted: None,
             short: VecDeque::new(),
             short_running: 0,
             long_running: 0,
@@ -134,7 +123,6 @@ impl Turns {
     pub(super) fn submit(self: &Arc<Self>, job: Job) {
         let mut queue = self.lock();
         queue.short.push_back(job);
-        queue.submitted = Some(Instant::now());
         self.hand_out(queue);
     }
 
@@ -251,15 +239,14 @@ impl Queue {
         self.free += 1;
     }
 
-    /// Who is next of those who wait, at the instant until when is counted.
+    /// Who is next of those who wait.
     fn next(&mut self) -> Option<Next> {
-        let is_left = self.submitted.is_some_and(|then| self.counted.saturating_duration_since(then) < LEFT);
-        let most_long = if is_left { (self.workers - 1).max(1) } else { self.workers };
-        let mut next_long = || if self.long_running < most_long { self.long.pop_front().map(Next::Long) } else { None };
-        if self.lead > LEAD && let Some(next) = next_long() {
-            return Some(next);
+        if self.lead > LEAD
+            && let Some(suspended) = self.long.pop_front()
+        {
+            return Some(Next::Long(suspended));
         }
-        self.short.pop_front().map(Next::Short).or_else(next_long)
+        self.short.pop_front().map(Next::Short).or_else(|| self.long.pop_front().map(Next::Long))
     }
 }
 
@@ -269,9 +256,7 @@ impl Turn {
         let turns = self.turns.take()?;
         let mut queue = turns.lock();
         queue.release(self.is_long);
-        let granted = turns.grant(&mut queue);
-        turns.hand_out(queue);
-        match granted {
+        match turns.grant(&mut queue) {
             Some(Granted::Begun(job, turn)) => Some((job, turn)),
             Some(Granted::Resumed) | None => None,
         }
@@ -304,7 +289,7 @@ mod tests {
     use tokio::runtime::{Builder, Runtime};
     use tokio::sync::oneshot::channel;
 
-    use super::{KNOWN, LEAD, LEAST_LONG, LEFT, LONG, MOST_KNOWN, Position, Queue, Turns, long};
+    use super::{KNOWN, LEAD, LEAST_LONG, LONG, MOST_KNOWN, Position, Queue, Turns, long};
 
     #[test]
     fn a_job_is_long_the_sooner_the_more_are_suspended() {
@@ -430,33 +415,6 @@ mod tests {
         queue.short_running = 3;
         queue.count(now + Duration::from_secs(3));
         assert_eq!(queue.lead, Duration::from_secs(4));
-    }
-
-    #[test]
-    fn one_of_several_workers_is_left_to_jobs_that_have_yet_to_come() {
-        let threads = Builder::new_current_thread().max_blocking_threads(2).build().unwrap();
-        let turns = Turns::new(2, threads.handle().clone());
-        let (saying, said) = mpsc::channel();
-        let submit = || {
-            let saying = saying.clone();
-            turns.submit(Box::new(move |turn| {
-                saying.send(()).unwrap();
-                Some(turn)
-            }));
-        };
-        submit();
-        said.recv().unwrap();
-        let first = turns.ask(Position::Last).blocking_recv().unwrap();
-        let mut second = turns.ask(Position::Last);
-        assert!(second.try_recv().is_err());
-        submit();
-        said.recv().unwrap();
-        // None has come for long enough.
-        turns.lock().submitted = Instant::now().checked_sub(LEFT);
-        let third = turns.ask(Position::Last);
-        let _second = second.blocking_recv().unwrap();
-        drop(first);
-        drop(third.blocking_recv().unwrap());
     }
 
     #[test]
