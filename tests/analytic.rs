@@ -461,7 +461,7 @@ fn a_theory_gives_numbers_within_its_stretch_and_none_outside() {
             }
         }
     });
-    assert!(ends.get() > 100, "{} of 500 stretches end on the way", ends.get());
+    assert!(ends.get() > 100, "{} of 500 segments end on the way", ends.get());
 }
 
 /// Where a theory holds is a matter of the flight, not of the rows that are wanted.

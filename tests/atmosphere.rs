@@ -3,7 +3,7 @@
 use num_dual::Dual64;
 use proptest::prelude::*;
 use reentry::atmosphere::AtmosphereSample;
-use reentry::atmosphere::us76::{self, BOUNDARIES, density, density_in, stretch};
+use reentry::atmosphere::us76::{self, BOUNDARIES, density, density_in, segment};
 use reentry::scalar::{Lanes, Scalar};
 use reentry_service::validation::cases::{US76, US76_GEOPOTENTIAL, rows};
 
@@ -37,8 +37,8 @@ fn sample<S: Scalar<Mask = bool>>(altitude: S) -> Air<S> {
     us76::sample(altitude).into()
 }
 
-fn sample_in<S: Scalar>(stretch: usize, altitude: S) -> Air<S> {
-    us76::sample_in(stretch, altitude).into()
+fn sample_in<S: Scalar>(segment: usize, altitude: S) -> Air<S> {
+    us76::sample_in(segment, altitude).into()
 }
 
 /// A number that was rounded, or cut off, when it was printed.
@@ -162,19 +162,19 @@ fn slopes_at_boundaries_are_those_from_each_side() {
 #[test]
 fn formulas_go_on_over_their_boundaries() {
     for (below, boundary) in BOUNDARIES.into_iter().enumerate() {
-        for (stretch, side) in [(below, -1.0), (below + 1, 1.0)] {
-            let inside = density_in(stretch, Dual64::new(boundary + 1e-3 * side, 1.0));
-            let outside = density_in(stretch, Dual64::new(boundary - 1e-3 * side, 1.0));
-            let far = density_in(stretch, Dual64::new(boundary - 10e3 * side, 1.0));
+        for (segment, side) in [(below, -1.0), (below + 1, 1.0)] {
+            let inside = density_in(segment, Dual64::new(boundary + 1e-3 * side, 1.0));
+            let outside = density_in(segment, Dual64::new(boundary - 1e-3 * side, 1.0));
+            let far = density_in(segment, Dual64::new(boundary - 10e3 * side, 1.0));
             // Where nitrogen leaves the mixed air, at 100 km, its scale height jumps by 3 %, and the formula for all gases with it.
             relative("slope", outside.eps, inside.eps, if below == 11 { 4e-2 } else { 1e-5 });
             // The speed of sound goes on as it is: a kilometre from the boundary it is still the line there, but for a bend.
             let [inside, outside, beyond] = [1e-3 * side, -1e-3 * side, -1e3 * side]
-                .map(|over| sample_in(stretch, Dual64::new(boundary + over, 1.0)).speed_of_sound);
+                .map(|over| sample_in(segment, Dual64::new(boundary + over, 1.0)).speed_of_sound);
             near("slope of sound", outside.eps, inside.eps, 1e-7);
             near("sound", beyond.re, inside.re - 1e3 * side * inside.eps, 3.0);
             let scale_height = -far.re / far.eps;
-            assert!((4e3..400e3).contains(&scale_height), "{scale_height} m beyond {boundary} m by {stretch}");
+            assert!((4e3..400e3).contains(&scale_height), "{scale_height} m beyond {boundary} m by {segment}");
         }
     }
 }
@@ -207,7 +207,7 @@ proptest! {
 
     #[test]
     fn lanes_and_dual_numbers_have_the_digits_of_f64(altitudes in prop::array::uniform8(altitude())) {
-        for here in (0..=BOUNDARIES.len()).chain([stretch(altitudes[0])]) {
+        for here in (0..=BOUNDARIES.len()).chain([segment(altitudes[0])]) {
             let lanes = numbers(sample_in(here, Lanes(altitudes)));
             for (lane, altitude) in altitudes.into_iter().enumerate() {
                 let alone = digits(sample_in(here, altitude));
@@ -219,7 +219,7 @@ proptest! {
         }
         for altitude in altitudes {
             let alone = digits(sample(altitude));
-            prop_assert_eq!(alone, digits(sample_in(stretch(altitude), altitude)));
+            prop_assert_eq!(alone, digits(sample_in(segment(altitude), altitude)));
             prop_assert_eq!(density(altitude).to_bits(), alone[0]);
         }
     }

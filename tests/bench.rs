@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
 use reentry::atmosphere::us76;
-use reentry::integrate::{Integrator, Limits, Pace, Statistics, System};
+use reentry::integrate::{Integrator, Limits, StepBounds, Statistics, System};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{arrival, arrivals};
@@ -216,7 +216,7 @@ impl System<f64, 6> for Over {
     }
 }
 
-impl Pace<6> for Over {
+impl StepBounds<6> for Over {
     fn magnitudes(&self) -> [f64; 6] {
         Cartesian(self.0.forces()).magnitudes()
     }

@@ -385,10 +385,10 @@ fn arrivals_with_events_are_the_ends_of_the_flights() {
     ];
     let scenarios: Vec<_> = cases.iter().map(|case| Scenario::new(case.clone()).unwrap()).collect();
     let never = AtomicBool::new(false);
-    let abreast = arrivals::<4>(&scenarios, &never);
-    for ((scenario, case), abreast) in scenarios.iter().zip(&cases).zip(abreast) {
+    let in_lanes = arrivals::<4>(&scenarios, &never);
+    for ((scenario, case), in_lanes) in scenarios.iter().zip(&cases).zip(in_lanes) {
         let flight = fly(case);
-        for end in [arrival(scenario, &never).unwrap(), abreast.unwrap()] {
+        for end in [arrival(scenario, &never).unwrap(), in_lanes.unwrap()] {
             assert_eq!(end.time.to_bits(), flight.end_time().to_bits());
             assert_eq!((end.state, end.termination), (flight.arrival().state, flight.termination()));
         }

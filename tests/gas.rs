@@ -7,7 +7,7 @@ use reentry::atmosphere::{Gas, MOLAR_GAS_CONSTANT, Table};
 use reentry::event::{Condition, Direction, Effect, Event, Quantity};
 use reentry::interpolation::{Hint, TableError};
 use reentry::planet::{Gravity, Shape};
-use reentry::trajectory::{Lookup, Warning};
+use reentry::trajectory::{TableId, Warning};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory};
 
 use crate::check::{near, relative};
@@ -200,7 +200,7 @@ fn leaving_the_standard_atmosphere_is_a_warning_that_says_where() {
     };
     let seen = |flight: &Trajectory| -> Vec<_> {
         let of = |warning: &Warning| match *warning {
-            Warning::OutsideTable { table: Lookup::Us76, time, altitude, edge, above } => {
+            Warning::OutsideTable { table: TableId::Us76, time, altitude, edge, above } => {
                 Some((edge, above, time, altitude))
             }
             _ => None,

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use reentry::atmosphere::Atmosphere;
 use reentry::coordinates::{GreatCircle, OrbitShape, OrbitalElements};
 use reentry::event::{Condition, Direction, Effect, Event, Quantity};
-use reentry::integrate::{Integrator, Limits, Pace, System};
+use reentry::integrate::{Integrator, Limits, StepBounds, System};
 use reentry::motion::Cartesian;
 use reentry::propulsion::{Axis, Impulse};
 use reentry::trajectory::Sampling;
@@ -112,7 +112,7 @@ impl System<f64, 7> for Measured<'_> {
     }
 }
 
-impl Pace<7> for Measured<'_> {
+impl StepBounds<7> for Measured<'_> {
     fn magnitudes(&self) -> [f64; 7] {
         [EQUATORIAL_RADIUS, EQUATORIAL_RADIUS, EQUATORIAL_RADIUS, 7900.0, 7900.0, 7900.0, EQUATORIAL_RADIUS]
     }

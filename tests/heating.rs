@@ -103,10 +103,10 @@ fn detra_kemp_and_riddell_give_the_convection_of_apollo_4() {
 fn tauber_and_sutton_give_the_radiation_that_others_have_published() {
     relative("11 km/s", tauber_sutton(9, 3e-4, 11_000.0, 1.0), 3.6014e6, 2e-5);
     relative("12 km/s on 0.94 m", tauber_sutton(11, 3e-4, 12_000.0, 0.94), 8.40e6, 2e-3);
-    for (stretch, speed, f) in [(1, 9000.0, 1.5), (5, 10_000.0, 35.0), (14, 13_500.0, 850.0), (19, 16_000.0, 2040.0)] {
-        // An entry belongs to the stretches on both sides.
-        for stretch in [stretch, stretch.max(2) - 1] {
-            let flux = tauber_sutton(stretch, 2e-4, speed, 1.0);
+    for (segment, speed, f) in [(1, 9000.0, 1.5), (5, 10_000.0, 35.0), (14, 13_500.0, 850.0), (19, 16_000.0, 2040.0)] {
+        // An entry belongs to the segments on both sides.
+        for segment in [segment, segment.max(2) - 1] {
+            let flux = tauber_sutton(segment, 2e-4, speed, 1.0);
             relative(&format!("f({speed})"), flux / (4.736e8 * 2e-4_f64.powf(1.22)), f, 1e-13);
         }
     }

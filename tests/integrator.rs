@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use num_dual::Dual64;
-use reentry::integrate::{IntegrationError, Integrator, Interpolant, Limits, Pace, Step, System, event, follow};
+use reentry::integrate::{IntegrationError, Integrator, Interpolant, Limits, StepBounds, Step, System, event, follow};
 use reentry::motion::{Cartesian, Spherical};
 use reentry::scalar::Scalar;
 
@@ -22,7 +22,7 @@ impl<S: Scalar> System<S, 4> for Kepler {
     }
 }
 
-impl Pace<4> for Kepler {
+impl StepBounds<4> for Kepler {
     fn magnitudes(&self) -> [f64; 4] {
         [1.0; 4]
     }
@@ -120,7 +120,7 @@ fn evaluations_are_counted() {
             [-state[0] * state[0]]
         }
     }
-    impl Pace<1> for Counting {
+    impl StepBounds<1> for Counting {
         fn magnitudes(&self) -> [f64; 1] {
             [1.0]
         }
@@ -148,7 +148,7 @@ fn a_step_that_is_not_finite_is_rejected() {
             [state[0].sqrt() * -2.0]
         }
     }
-    impl Pace<1> for Edge {
+    impl StepBounds<1> for Edge {
         fn magnitudes(&self) -> [f64; 1] {
             [1.0]
         }
@@ -179,7 +179,7 @@ fn a_system_without_a_finite_slope_is_refused() {
             [S::from(f64::NAN)]
         }
     }
-    impl Pace<1> for Nowhere {
+    impl StepBounds<1> for Nowhere {
         fn magnitudes(&self) -> [f64; 1] {
             [1.0]
         }

@@ -48,12 +48,12 @@ fn derivatives_agree<const L: usize>(case: &Case) {
         drag_coefficient: Lanes::from(case.parameters().drag_coefficient),
         density: Lanes::from(case.parameters().density),
     };
-    let abreast = Forces::new(case.models(), parameters);
+    let in_lanes = Forces::new(case.models(), parameters);
     let states = members.map(|(_, state)| -> [f64; 6] { state.into() });
     let places = members.map(|(_, state)| -> [f64; 6] { state.to_planet_fixed().into() });
     let by_lane = |rows: &[[f64; 6]; L]| std::array::from_fn(|i| Lanes(rows.map(|row| row[i])));
-    let spherical = Spherical(abreast.clone()).derivative(Lanes::from(0.0), &by_lane(&states));
-    let cartesian = Cartesian(abreast).derivative(Lanes::from(0.0), &by_lane(&places));
+    let spherical = Spherical(in_lanes.clone()).derivative(Lanes::from(0.0), &by_lane(&states));
+    let cartesian = Cartesian(in_lanes).derivative(Lanes::from(0.0), &by_lane(&places));
     for lane in 0..L {
         let alone = Forces::new(case.models(), members[lane].0);
         let digits = |lanes: [Lanes<L>; 6]| lanes.map(|component| component.0[lane].to_bits());

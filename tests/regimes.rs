@@ -10,7 +10,7 @@ use reentry::coordinates::Inertial;
 use reentry::motion::Switch;
 use reentry::planet::{Gravity, Zonal};
 use reentry::simulate::SimulationError;
-use reentry::trajectory::{Lookup, Sampling, Termination, Warning};
+use reentry::trajectory::{TableId, Sampling, Termination, Warning};
 use reentry::vehicle::{AlphaMachTable, MachTable};
 use reentry::wind::WindTable;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};
@@ -359,17 +359,17 @@ fn leaving_a_table_is_a_warning_that_says_where() {
             other => panic!("{other:?}"),
         })
         .collect();
-    let find = |table: Lookup, above: bool| {
+    let find = |table: TableId, above: bool| {
         let found: Vec<_> = seen.iter().filter(|seen| (seen.0, seen.2) == (table, above)).collect();
         assert_eq!(found.len(), 1, "{table:?} {above}: {seen:?}");
         *found[0]
     };
     // It starts above the wind, soon is faster than the table of coefficients, where the air is colder, and lands slower.
-    let (_, edge, _, time, altitude) = find(Lookup::Wind, true);
+    let (_, edge, _, time, altitude) = find(TableId::Wind, true);
     assert_eq!((edge, time), (30e3, 0.0));
     near("altitude", altitude, flight.initial().loads.altitude, 1e-6);
     for (above, mach) in [(true, 20.0), (false, 0.5)] {
-        let (_, edge, _, time, altitude) = find(Lookup::Mach, above);
+        let (_, edge, _, time, altitude) = find(TableId::Mach, above);
         let there = flight.at(time);
         assert!(time > 1.0);
         near("edge", edge, mach, 0.0);
@@ -385,7 +385,7 @@ fn leaving_a_table_is_a_warning_that_says_where() {
     let warned = fly(&Case { control: steep, ..case });
     assert!(warned.warnings().iter().any(|warning| matches!(
         warning,
-        Warning::OutsideTable { table: Lookup::AngleOfAttack, edge: 0.7, above: true, time: 0.0, .. }
+        Warning::OutsideTable { table: TableId::AngleOfAttack, edge: 0.7, above: true, time: 0.0, .. }
     )));
 }
 

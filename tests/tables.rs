@@ -19,8 +19,8 @@ use crate::flights::config;
 /// Rounding, in parts of the greatest entry.
 const ROUNDING: f64 = 1e-13;
 
-fn cubic<S: Scalar>(cubics: &Cubics<1>, stretch: usize, x: S) -> S {
-    let [value] = cubics.at(stretch, x, &Hint::default());
+fn cubic<S: Scalar>(cubics: &Cubics<1>, segment: usize, x: S) -> S {
+    let [value] = cubics.at(segment, x, &Hint::default());
     value
 }
 
@@ -130,12 +130,12 @@ proptest! {
         let cubics = Cubics::new(&at, [&values, &doubled]).unwrap();
         let larger = Cubics::new(&[-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 1e9], [&[0.0; 13]]).unwrap();
         let stale = Hint::default();
-        for stretch in 0..3 {
-            let lanes = cubics.at(stretch, Lanes(places), &stale);
+        for segment in 0..3 {
+            let lanes = cubics.at(segment, Lanes(places), &stale);
             for (lane, x) in places.into_iter().enumerate() {
-                let alone = cubics.at(stretch, x, &Hint::default());
+                let alone = cubics.at(segment, x, &Hint::default());
                 let _ = larger.at(1, 1e8, &stale);
-                let dual = cubics.at(stretch, Dual64::new(x, 1.0), &stale);
+                let dual = cubics.at(segment, Dual64::new(x, 1.0), &stale);
                 prop_assert_eq!(lanes.map(|value| value.0[lane].to_bits()), alone.map(f64::to_bits));
                 prop_assert_eq!(dual.map(|value| value.re.to_bits()), alone.map(f64::to_bits));
                 prop_assert!(alone.iter().chain(&dual.map(|value| value.eps)).all(|number| number.is_finite()));
@@ -147,9 +147,9 @@ proptest! {
 #[test]
 fn one_entry_is_a_constant_and_two_are_a_line() {
     let one = Cubics::new(&[2.0], [&[5.0]]).unwrap();
-    for stretch in 0..3 {
+    for segment in 0..3 {
         for x in [f64::MIN, -1.0, 2.0, 7.0, f64::MAX] {
-            let value = cubic(&one, stretch, Dual64::new(x, 1.0));
+            let value = cubic(&one, segment, Dual64::new(x, 1.0));
             assert_eq!((value.re, value.eps), (5.0, 0.0));
         }
     }
@@ -320,11 +320,11 @@ proptest! {
     ) {
         let surfaces = grid.surfaces();
         let hints = <[Hint; 2]>::default();
-        for stretches in [[0, 0], [0, 1], [1, 0], [1, 1], [1, 2], [2, 1], [2, 2]] {
-            let lanes = surfaces.at(stretches, [Lanes(first), Lanes(second)], &hints);
+        for segments in [[0, 0], [0, 1], [1, 0], [1, 1], [1, 2], [2, 1], [2, 2]] {
+            let lanes = surfaces.at(segments, [Lanes(first), Lanes(second)], &hints);
             for lane in 0..4 {
-                let alone = surfaces.at(stretches, [first[lane], second[lane]], &<[Hint; 2]>::default());
-                let dual = surfaces.at(stretches, [Dual64::new(first[lane], 1.0), Dual64::new(second[lane], 1.0)], &hints);
+                let alone = surfaces.at(segments, [first[lane], second[lane]], &<[Hint; 2]>::default());
+                let dual = surfaces.at(segments, [Dual64::new(first[lane], 1.0), Dual64::new(second[lane], 1.0)], &hints);
                 prop_assert_eq!(lanes.map(|value| value.0[lane].to_bits()), alone.map(f64::to_bits));
                 prop_assert_eq!(dual.map(|value| value.re.to_bits()), alone.map(f64::to_bits));
                 prop_assert!(alone.iter().chain(&dual.map(|value| value.eps)).all(|number| number.is_finite()));
@@ -375,7 +375,7 @@ fn coefficients_beyond_a_table_are_those_of_its_edge() {
     let table = AlphaMachTable::new(&grid.first, &grid.second, lift, drag).unwrap();
     assert_eq!((table.angle_of_attack_range(), table.mach_range()), (&[0.0, 0.5], &[1.0, 8.0]));
     let hints = <[Hint; 2]>::default();
-    for (stretches, [alpha, mach], [row, column]) in [
+    for (segments, [alpha, mach], [row, column]) in [
         ([0, 0], [-1.0, 0.1], [0, 0]),
         ([2, 0], [0.6, 0.1], [2, 0]),
         ([0, 2], [-0.1, 30.0], [0, 2]),
@@ -383,18 +383,18 @@ fn coefficients_beyond_a_table_are_those_of_its_edge() {
         ([1, 2], [0.2, 30.0], [1, 2]),
         ([2, 1], [1.0, 3.0], [2, 1]),
     ] {
-        let found = table.coefficients(stretches, Dual64::new(alpha, 1.0), Dual64::new(mach, 0.0), &hints);
+        let found = table.coefficients(segments, Dual64::new(alpha, 1.0), Dual64::new(mach, 0.0), &hints);
         near("lift", found.lift.re, lift[row][column], 1e-14);
         near("drag", found.drag.re, drag[row][column], 1e-14);
-        if stretches[0] != 1 {
+        if segments[0] != 1 {
             assert_eq!((found.lift.eps, found.drag.eps), (0.0, 0.0));
         }
     }
     let of_mach = MachTable::new(&grid.second, &lift[2], &drag[2]).unwrap();
     for mach in [0.1, 1.0, 2.0, 5.0, 8.0, 20.0] {
-        let stretch = usize::from(mach >= 1.0) + usize::from(mach >= 8.0);
-        let one = of_mach.coefficients(stretch, mach, &hints[0]);
-        let two = table.coefficients([2, stretch], 0.5, mach, &hints);
+        let segment = usize::from(mach >= 1.0) + usize::from(mach >= 8.0);
+        let one = of_mach.coefficients(segment, mach, &hints[0]);
+        let two = table.coefficients([2, segment], 0.5, mach, &hints);
         near("lift", two.lift, one.lift, 1e-14);
         near("drag", two.drag, one.drag, 1e-14);
     }
@@ -421,14 +421,14 @@ fn the_wind_of_a_table() {
     let hint = Hint::default();
     let [low, high] = *table.range();
     assert_eq!((low, high), (0.0, 20e3));
-    for (stretch, altitude, east) in [(0, -1e3, 0.0), (1, 0.0, 0.0), (1, 10e3, 30.0), (2, 20e3, 10.0), (2, 1e6, 10.0)] {
-        let [found, north] = table.velocity(stretch, altitude, &hint);
+    for (segment, altitude, east) in [(0, -1e3, 0.0), (1, 0.0, 0.0), (1, 10e3, 30.0), (2, 20e3, 10.0), (2, 1e6, 10.0)] {
+        let [found, north] = table.velocity(segment, altitude, &hint);
         near("east", found, east, 1e-12);
         near("north", north, 5.0, 1e-12);
     }
 }
 
-/// A model, and how many stretches it has.
+/// A model, and how many segments it has.
 fn models() -> Vec<(Atmosphere, usize)> {
     let altitude = [-1e3, 0.0, 12e3, 50e3, 90e3];
     let density = [1.3, 1.2, 0.3, 1e-3, 3e-6];
@@ -468,31 +468,31 @@ fn stretch_of(boundaries: &[f64], altitude: f64) -> usize {
 #[test]
 fn every_formula_is_finite_at_every_altitude() {
     let hint = Hint::default();
-    for (model, stretches) in models() {
-        assert_eq!(model.boundaries().len() + 1, stretches);
+    for (model, segments) in models() {
+        assert_eq!(model.boundaries().len() + 1, segments);
         for magnitude in [0.0, 1.0, 1e3, 1e4, 5e4, 9e4, 2e5, 1e6, 6.4e6, 1e7, 1e8, 1e9, 1e12, 1e100, f64::MAX] {
             for altitude in [magnitude, -magnitude] {
-                for stretch in 0..stretches {
+                for segment in 0..segments {
                     let altitude = Dual64::new(altitude, 1.0);
-                    let air = model.sample(stretch, altitude, &hint);
+                    let air = model.sample(segment, altitude, &hint);
                     let positive = |number: Dual64| number.re > 0.0 && number.re.is_finite() && number.eps.is_finite();
-                    let what = || format!("{model:?} at {altitude} by {stretch}: {air:?}");
+                    let what = || format!("{model:?} at {altitude} by {segment}: {air:?}");
                     assert!(
                         air.density.re >= 0.0 && air.density.re.is_finite() && air.density.eps.is_finite(),
                         "{}",
                         what()
                     );
                     assert!(air.speed_of_sound.is_none_or(positive), "{}", what());
-                    // A formula is used far off its stretch by trial stages alone, which take no temperature nor pressure.
+                    // A formula is used far off its segment by trial stages alone, which take no temperature nor pressure.
                     let finite = |number: Dual64| number.re.is_finite() && number.eps.is_finite();
                     assert!(air.temperature.is_none_or(finite) && air.pressure.is_none_or(finite), "{}", what());
                     assert_eq!(air.temperature.is_some(), model.has_temperature());
                     assert_eq!(air.speed_of_sound.is_some(), model.has_speed_of_sound());
                     assert_eq!(air.pressure.is_some(), model.has_pressure());
-                    let (density, sound) = model.density_and_sound(stretch, altitude, &hint);
+                    let (density, sound) = model.density_and_sound(segment, altitude, &hint);
                     let bits = |number: Dual64| [number.re, number.eps].map(f64::to_bits);
                     assert_eq!(bits(density), bits(air.density));
-                    assert_eq!(bits(model.density(stretch, altitude, &hint)), bits(air.density));
+                    assert_eq!(bits(model.density(segment, altitude, &hint)), bits(air.density));
                     assert_eq!(bits(sound), bits(air.speed_of_sound.unwrap_or(Dual64::from(1.0))));
                 }
             }
@@ -505,23 +505,23 @@ proptest! {
 
     #[test]
     fn every_model_has_the_digits_of_f64_in_lanes_and_its_slope_in_dual_numbers(altitudes in prop::array::uniform8(-2e3..150e3)) {
-        for (model, stretches) in models().into_iter().take(8) {
-            for stretch in 0..stretches {
+        for (model, segments) in models().into_iter().take(8) {
+            for segment in 0..segments {
                 let hint = Hint::default();
-                let (density, sound) = model.density_and_sound(stretch, Lanes(altitudes), &hint);
+                let (density, sound) = model.density_and_sound(segment, Lanes(altitudes), &hint);
                 for (lane, altitude) in altitudes.into_iter().enumerate() {
-                    let alone = model.density_and_sound(stretch, altitude, &hint);
+                    let alone = model.density_and_sound(segment, altitude, &hint);
                     prop_assert_eq!([density, sound].map(|number| number.0[lane].to_bits()), [alone.0, alone.1].map(f64::to_bits));
-                    let only: f64 = model.density(stretch, altitude, &hint);
+                    let only: f64 = model.density(segment, altitude, &hint);
                     prop_assert_eq!(only.to_bits(), alone.0.to_bits());
                 }
             }
             let altitude = altitudes[0];
             prop_assume!(model.boundaries().iter().all(|boundary| f64::abs(altitude - boundary) > 2.0));
-            let stretch = stretch_of(model.boundaries(), altitude);
+            let segment = stretch_of(model.boundaries(), altitude);
             let hint = Hint::default();
-            let (density, sound) = model.density_and_sound(stretch, Dual64::new(altitude, 1.0), &hint);
-            let [above, below] = [1.0, -1.0].map(|step| model.density_and_sound(stretch, altitude + step, &hint));
+            let (density, sound) = model.density_and_sound(segment, Dual64::new(altitude, 1.0), &hint);
+            let [above, below] = [1.0, -1.0].map(|step| model.density_and_sound(segment, altitude + step, &hint));
             // Rounding, the square of a step over a kilometre, and the jump of the second derivative at an entry.
             near("density", density.eps, (above.0 - below.0) / 2.0, 1e-13 * density.re + 1e-3 * density.eps.abs());
             near("sound", sound.eps, (above.1 - below.1) / 2.0, 1e-13 * sound.re + 1e-4);
@@ -529,7 +529,7 @@ proptest! {
     }
 }
 
-/// A trial stage that looks over an end sees the formula of its own stretch, which joins that of the next.
+/// A trial stage that looks over an end sees the formula of its own segment, which joins that of the next.
 #[test]
 fn formulas_join_at_their_boundaries() {
     let hint = Hint::default();
@@ -539,8 +539,8 @@ fn formulas_join_at_their_boundaries() {
         (models()[5].0.clone(), 1e-13),
     ] {
         for (below, boundary) in model.boundaries().iter().enumerate() {
-            // Hydrogen begins at 150 km, but is in the formula for all stretches above 86 km.
-            let [left, right] = [below, below + 1].map(|stretch| model.density(stretch, *boundary, &hint));
+            // Hydrogen begins at 150 km, but is in the formula for all segments above 86 km.
+            let [left, right] = [below, below + 1].map(|segment| model.density(segment, *boundary, &hint));
             relative(&format!("at {boundary} m"), left, right, tolerance);
         }
     }

@@ -319,9 +319,9 @@ fn unsound(answer: &Answer) -> Option<String> {
             });
             let ends = [&answer["valid"]["from_altitude"], &answer["valid"]["to_altitude"]];
             let never = predicted.iter().flatten().all(Option::is_none);
-            let stretch = ends.iter().all(|end| end.is_null() == never);
+            let segment = ends.iter().all(|end| end.is_null() == never);
             let complete = !answer["simulated"].to_string().contains("null") && !text.contains("NaN");
-            (!(consistent && stretch && complete)).then(|| text.to_string())
+            (!(consistent && segment && complete)).then(|| text.to_string())
         }
         StatusCode::UNPROCESSABLE_ENTITY if text.contains("NaN") || text.contains("inf") => Some(text.to_string()),
         StatusCode::UNPROCESSABLE_ENTITY | StatusCode::GATEWAY_TIMEOUT => {

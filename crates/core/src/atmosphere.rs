@@ -57,7 +57,7 @@ impl Atmosphere {
     /// The exponential atmosphere of the thesis.
     pub const EARTH_JAMESON: Self = Self::Exponential { surface_density: 1.547_93, scale_height: 6935.0 };
 
-    /// The altitudes, m, ascending, at which the formula changes: between them lie the stretches, of which the first, 0, has no lower
+    /// The altitudes, m, ascending, at which the formula changes: between them lie the segments, of which the first, 0, has no lower
     /// end, and the last no upper one.
     pub fn boundaries(&self) -> &[f64] {
         match self {
@@ -68,16 +68,16 @@ impl Atmosphere {
         }
     }
 
-    /// Density, kg/m³, at an altitude above the surface along the radius vector, m, by the formula of a stretch between
+    /// Density, kg/m³, at an altitude above the surface along the radius vector, m, by the formula of a segment between
     /// [`boundaries`](Self::boundaries), which goes on beyond its ends.
     ///
     /// From 700 scale heights below the surface on, where hardly more than trial stages of the integrator come,
     /// the density grows no more: there it is e⁷⁰⁰ times its surface value, and further down no number would hold it.
     #[inline(always)]
-    pub fn density<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
+    pub fn density<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
         match *self {
             Self::Exponential { surface_density, scale_height } => falling(surface_density, altitude, scale_height),
-            _ => self.density_by_stretch(stretch, altitude, hint),
+            _ => self.density_by_stretch(segment, altitude, hint),
         }
     }
 
@@ -85,39 +85,39 @@ impl Atmosphere {
     /// they do not make room for it either.
     #[cold]
     #[inline(never)]
-    fn density_by_stretch<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
+    fn density_by_stretch<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
         match self {
             Self::Vacuum => S::zero(),
-            Self::Us76 => us76::density_in(stretch, altitude),
-            Self::Layers(layers) => layers.density(stretch, altitude),
-            Self::Table(table) => table.density(stretch, altitude, hint),
+            Self::Us76 => us76::density_in(segment, altitude),
+            Self::Layers(layers) => layers.density(segment, altitude),
+            Self::Table(table) => table.density(segment, altitude, hint),
             Self::Exponential { surface_density, scale_height } => falling(*surface_density, altitude, *scale_height),
         }
     }
 
-    /// Density, kg/m³, and speed of sound, m/s, at an altitude, m, by the formulas of a stretch; of a model that has no speed of sound
+    /// Density, kg/m³, and speed of sound, m/s, at an altitude, m, by the formulas of a segment; of a model that has no speed of sound
     /// it is 1 m/s.
     #[inline(never)]
-    pub fn density_and_sound<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> (S, S) {
+    pub fn density_and_sound<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> (S, S) {
         match self {
-            Self::Us76 => us76::density_and_sound_in(stretch, altitude),
+            Self::Us76 => us76::density_and_sound_in(segment, altitude),
             Self::Table(table) => {
-                let sound = table.speed_of_sound(stretch, altitude, hint);
-                (table.density(stretch, altitude, hint), sound.unwrap_or_else(S::one))
+                let sound = table.speed_of_sound(segment, altitude, hint);
+                (table.density(segment, altitude, hint), sound.unwrap_or_else(S::one))
             }
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => {
-                (self.density(stretch, altitude, hint), S::one())
+                (self.density(segment, altitude, hint), S::one())
             }
         }
     }
 
-    /// The air at an altitude, m, by the formulas of a stretch.
-    pub fn sample<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
+    /// The air at an altitude, m, by the formulas of a segment.
+    pub fn sample<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
         match self {
-            Self::Us76 => us76::sample_in(stretch, altitude),
-            Self::Table(table) => table.sample(stretch, altitude, hint),
+            Self::Us76 => us76::sample_in(segment, altitude),
+            Self::Table(table) => table.sample(segment, altitude, hint),
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => AtmosphereSample {
-                density: self.density(stretch, altitude, hint),
+                density: self.density(segment, altitude, hint),
                 temperature: None,
                 pressure: None,
                 speed_of_sound: None,

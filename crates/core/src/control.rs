@@ -52,8 +52,8 @@ pub struct Schedule {
     against: Against,
     /// Where the formula changes, ascending.
     corners: Vec<f64>,
-    /// Of each stretch between corners the value where it begins, rad, and the slope; the first has no beginning but the first corner.
-    stretches: Vec<Stretch>,
+    /// Of each segment between corners the value where it begins, rad, and the slope; the first has no beginning but the first corner.
+    segments: Vec<Stretch>,
 }
 
 /// A straight piece: base + slope (x - origin).
@@ -94,7 +94,7 @@ impl Schedule {
     pub fn new(against: Against, at: &[f64], value: &[f64], interpolation: Interpolation) -> Result<Self, TableError> {
         interpolation::check(at, &[value])?;
         let level = |base: f64| Stretch { origin: 0.0, base, slope: 0.0 };
-        let (corners, stretches) = match interpolation {
+        let (corners, segments) = match interpolation {
             Interpolation::Step => (at[1..].to_vec(), value.iter().copied().map(level).collect()),
             Interpolation::Linear => {
                 let between = at.windows(2).zip(value.windows(2)).map(|(at, value)| Stretch {
@@ -106,7 +106,7 @@ impl Schedule {
                 (at.to_vec(), std::iter::once(first).chain(between).chain([last]).collect())
             }
         };
-        Ok(Self { against, corners, stretches })
+        Ok(Self { against, corners, segments })
     }
 
     /// What it runs along.
@@ -117,14 +117,14 @@ impl Schedule {
     /// The same schedule with an angle, rad, added everywhere.
     #[must_use]
     pub fn turned_by(&self, angle: f64) -> Self {
-        let turned = |stretch: &Stretch| Stretch { base: stretch.base + angle, ..*stretch };
-        Self { stretches: self.stretches.iter().map(turned).collect(), ..self.clone() }
+        let turned = |segment: &Stretch| Stretch { base: segment.base + angle, ..*segment };
+        Self { segments: self.segments.iter().map(turned).collect(), ..self.clone() }
     }
 
-    /// The angle, rad, where the quantity has a value, by the formula of a stretch: 0 before the first corner, 1 after it, and so on.
+    /// The angle, rad, where the quantity has a value, by the formula of a segment: 0 before the first corner, 1 after it, and so on.
     #[inline(always)]
-    pub fn angle<S: Scalar>(&self, stretch: usize, quantity: S) -> S {
-        let Stretch { origin, base, slope } = self.stretches[stretch];
+    pub fn angle<S: Scalar>(&self, segment: usize, quantity: S) -> S {
+        let Stretch { origin, base, slope } = self.segments[segment];
         (quantity - origin) * slope + base
     }
 }

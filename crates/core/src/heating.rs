@@ -80,10 +80,10 @@ impl Stagnation {
         Self { heating, nose_radius, ln_nose_radius: nose_radius.ln() }
     }
 
-    /// The fluxes in air of a density, kg/m³, at a speed relative to it, m/s, by the formula of a stretch of
+    /// The fluxes in air of a density, kg/m³, at a speed relative to it, m/s, by the formula of a segment of
     /// [`boundaries`](Self::boundaries).
     #[inline(always)]
-    pub fn heat_flux<S: Scalar>(&self, stretch: usize, density: S, air_speed: S) -> HeatFlux<S> {
+    pub fn heat_flux<S: Scalar>(&self, segment: usize, density: S, air_speed: S) -> HeatFlux<S> {
         let convective = match self.heating.convective {
             Convective::SuttonGraves { constant } => sutton_graves(constant, density, air_speed, self.nose_radius),
             Convective::DetraKempRiddell => detra_kemp_riddell(density, air_speed, self.nose_radius),
@@ -91,7 +91,7 @@ impl Stagnation {
         };
         let radiative = match self.heating.radiative {
             Radiative::None => S::zero(),
-            Radiative::TauberSutton => radiation(stretch, density, air_speed, [self.nose_radius, self.ln_nose_radius]),
+            Radiative::TauberSutton => radiation(segment, density, air_speed, [self.nose_radius, self.ln_nose_radius]),
         };
         HeatFlux { convective, radiative }
     }
@@ -206,7 +206,7 @@ const FLUX_AT_CIRCULAR_SPEED: f64 = 1.103_483e8;
 /// ```
 ///
 /// The symbols and their units are those of [`sutton_graves`]; the paper's C = 4.736e4 gives W/cm². f is tabulated from 9 to 16 km/s,
-/// with straight lines between; below there is no radiation, and above f stays what it is at 16 km/s. `stretch` counts the entries of the
+/// with straight lines between; below there is no radiation, and above f stays what it is at 16 km/s. `segment` counts the entries of the
 /// table below the speed. Valid from 10 to 16 km/s, for densities from 6.66e-5 to 6.31e-4 kg/m³, which is from 72 down to 54 km, and nose radii
 /// from 0.3 to 3 m, to some 20 to 30 % ([`Range`]).
 ///
@@ -221,22 +221,22 @@ const FLUX_AT_CIRCULAR_SPEED: f64 = 1.103_483e8;
 /// assert!((flux - 4.736e8 * 1e-4_f64.powf(1.22) * 238.0).abs() < 1e-6 * flux);
 /// ```
 #[inline(always)]
-pub fn tauber_sutton<S: Scalar>(stretch: usize, density: S, speed: S, nose_radius: f64) -> S {
-    radiation(stretch, density, speed, [nose_radius, nose_radius.ln()])
+pub fn tauber_sutton<S: Scalar>(segment: usize, density: S, speed: S, nose_radius: f64) -> S {
+    radiation(segment, density, speed, [nose_radius, nose_radius.ln()])
 }
 
 /// The flux, with the logarithm of the nose radius.
 #[inline(always)]
-fn radiation<S: Scalar>(stretch: usize, density: S, speed: S, [nose_radius, ln_nose_radius]: [f64; 2]) -> S {
-    if stretch == 0 {
+fn radiation<S: Scalar>(segment: usize, density: S, speed: S, [nose_radius, ln_nose_radius]: [f64; 2]) -> S {
+    if segment == 0 {
         return S::zero();
     }
     let last = TAUBER_SUTTON_SPEED.len() - 1;
-    let f = if stretch > last {
+    let f = if segment > last {
         S::from(TAUBER_SUTTON_F[last])
     } else {
         let [(v0, f0), (v1, f1)] =
-            [stretch - 1, stretch].map(|entry| (TAUBER_SUTTON_SPEED[entry], TAUBER_SUTTON_F[entry]));
+            [segment - 1, segment].map(|entry| (TAUBER_SUTTON_SPEED[entry], TAUBER_SUTTON_F[entry]));
         (speed - v0) * ((f1 - f0) / (v1 - v0)) + f0
     };
     let greatest = match nose_radius {

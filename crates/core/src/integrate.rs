@@ -22,7 +22,7 @@ pub trait System<S, const N: usize> {
 }
 
 /// What a system says about the length of its steps.
-pub trait Pace<const N: usize>: System<f64, N> {
+pub trait StepBounds<const N: usize>: System<f64, N> {
     /// The typical size of each component; a component's tolerance is relative to the larger of its size and this.
     fn magnitudes(&self) -> [f64; N];
 
@@ -91,7 +91,7 @@ pub struct Integrator<'a, const N: usize> {
 
 impl<'a, const N: usize> Integrator<'a, N> {
     /// Starts at t = 0 with the given state.
-    pub fn new<F: Pace<N>>(system: &F, state: [f64; N], limits: Limits<'a>) -> Self {
+    pub fn new<F: StepBounds<N>>(system: &F, state: [f64; N], limits: Limits<'a>) -> Self {
         let derivative = system.derivative(0.0, &state);
         let mut control = Control::new(system, &state, &derivative, limits);
         control.shorten(system.longest_step(0.0, &state));
@@ -122,7 +122,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     ///
     /// # Errors
     /// When the limit of steps is reached, no step meets the tolerance, or the flag is raised.
-    pub fn advance<F: Pace<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
+    pub fn advance<F: StepBounds<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
         loop {
             let trial_end = self.control.trial_end(end)?;
             let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, self.control.length);
@@ -134,7 +134,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
-    pub fn shorten<F: Pace<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
+    pub fn shorten<F: StepBounds<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
         let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, end - step.start_time);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
@@ -143,7 +143,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Goes on from the end of a step with a system, or a state, that changes there.
-    pub fn restart<F: Pace<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
+    pub fn restart<F: StepBounds<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
         (self.control.time, self.state) = (time, state);
         self.derivative = system.derivative(self.control.time, &self.state);
         self.control.statistics.evaluations += 1;
@@ -151,7 +151,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Goes to the end of a trial step.
-    fn take<F: Pace<N>>(
+    fn take<F: StepBounds<N>>(
         &mut self,
         system: &F,
         trial: step::Trial<f64, N>,
@@ -173,7 +173,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
 ///
 /// # Errors
 /// Lane by lane those of [`Integrator::advance`].
-pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: usize>(
+pub fn try_in_lanes<M: System<Lanes<L>, N>, F: StepBounds<N>, const N: usize, const L: usize>(
     system: &M,
     mut lanes: [Option<(&mut Integrator<'_, N>, &F, f64)>; L],
 ) -> [Option<Result<Step<N>, IntegrationError>>; L] {
@@ -181,10 +181,10 @@ pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: 
         let (integrator, _, end) = lane.as_mut()?;
         Some(integrator.control.trial_end(*end))
     });
-    let state = from_fn(|i| abreast(&lanes, |integrator| integrator.state[i]));
-    let derivative = from_fn(|i| abreast(&lanes, |integrator| integrator.derivative[i]));
-    let time = abreast(&lanes, |integrator| integrator.control.time);
-    let length = abreast(&lanes, |integrator| integrator.control.length);
+    let state = from_fn(|i| packed(&lanes, |integrator| integrator.state[i]));
+    let derivative = from_fn(|i| packed(&lanes, |integrator| integrator.derivative[i]));
+    let time = packed(&lanes, |integrator| integrator.control.time);
+    let length = packed(&lanes, |integrator| integrator.control.length);
     let trial = step::attempt(&step::Once(system), time, &state, &derivative, length);
     let ends = Lanes(from_fn(|lane| match trial_ends[lane] {
         Some(Ok(end)) => end,
@@ -206,7 +206,7 @@ pub fn try_abreast<M: System<Lanes<L>, N>, F: Pace<N>, const N: usize, const L: 
 }
 
 /// A number of each integrator.
-fn abreast<F, const N: usize, const L: usize>(
+fn packed<F, const N: usize, const L: usize>(
     lanes: &[Option<(&mut Integrator<'_, N>, &F, f64)>; L],
     number: impl Fn(&Integrator<'_, N>) -> f64,
 ) -> Lanes<L> {
@@ -230,7 +230,7 @@ struct Control<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Control<'a, N> {
-    fn new<F: Pace<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
+    fn new<F: StepBounds<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
         let magnitudes = system.magnitudes();
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
         let mut control =
@@ -303,7 +303,7 @@ impl<'a, const N: usize> Control<'a, N> {
     }
 
     /// The length of the first step, from the sizes of the first and second derivative (Hairer, Nørsett, Wanner, section II.4).
-    fn first_step<F: Pace<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
+    fn first_step<F: StepBounds<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
         let norm = |vector: &[f64; N]| {
             let size = |i: usize| state[i].abs().max(self.magnitudes[i]);
             let component = |i: usize| vector[i] / (self.limits.relative_tolerance * size(i));

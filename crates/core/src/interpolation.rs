@@ -19,7 +19,7 @@
 //! # Stretches
 //!
 //! A table has three: 0 below its first entry, 1 inside, 2 above its last. The caller says which, since a step of the integration ends
-//! where another begins; trial stages that look over such an end find the formula of their own stretch continued. That of
+//! where another begins; trial stages that look over such an end find the formula of their own segment continued. That of
 //! the inside goes on as far as the cells at the ends are wide, and stays constant from there on.
 //!
 //! # Reference

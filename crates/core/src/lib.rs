@@ -81,7 +81,7 @@ pub mod coordinates;
 pub mod integrate;
 pub mod interpolation;
 pub mod interrupt;
-pub mod plain;
+pub mod number_text;
 pub mod root;
 pub mod scalar;
 

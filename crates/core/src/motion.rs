@@ -3,18 +3,18 @@
 mod cartesian;
 mod directions;
 mod loads;
+mod model_mode;
 mod quantity;
-mod regime;
 mod rest;
 mod spherical;
 
 pub use cartesian::Cartesian;
 pub use loads::Loads;
-pub use regime::{Lookup, Regime, Switch};
+pub use model_mode::{ModelMode, Switch, TableId};
 pub use spherical::Spherical;
 
-pub(crate) use quantity::Moment;
-pub(crate) use regime::{Chatter, Quantity};
+pub(crate) use model_mode::{Chatter, Quantity};
+pub(crate) use quantity::StateRate;
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -23,7 +23,7 @@ use crate::atmosphere::Atmosphere;
 use crate::control::{Against, Command, Control};
 use crate::coordinates::PlanetFixed;
 use crate::heating::{HeatFlux, Stagnation};
-use crate::integrate::Pace;
+use crate::integrate::StepBounds;
 use crate::interpolation::Hint;
 use crate::parachute::Canopies;
 use crate::planet::{Gravity, Planet};
@@ -55,19 +55,19 @@ pub struct Forces<P = f64> {
     sin_cos_bank: (P, P),
     burn: Option<Burn<P>>,
     canopies: Option<Canopies<P>>,
-    regime: Regime,
+    mode: ModelMode,
     has_switches: bool,
     /// Whether all models are those of the thesis. Functions with a constant `THESIS` know it when they are compiled, so that what
     /// a case does not use does not cost it a tenth of its time.
     of_thesis: bool,
     /// Whether coefficients or angles depend on the Mach number.
     by_mach: bool,
-    cells: Cells,
+    cache: LookupCache,
 }
 
 /// Where the tables were last looked at.
 #[derive(Clone, Debug, Default)]
-struct Cells {
+struct LookupCache {
     atmosphere: Hint,
     wind: Hint,
     angle_of_attack_and_mach: [Hint; 2],
@@ -123,7 +123,7 @@ pub struct Burn<P> {
 impl<P: Scalar> Burn<P> {
     /// The mass at the instant over the mass at a time, s: the rate at which it is burnt is constant.
     #[inline(always)]
-    fn lightness<S: Over<P>>(&self, time: S) -> S {
+    fn mass_ratio<S: Over<P>>(&self, time: S) -> S {
         self.mass_left(time).recip()
     }
 
@@ -144,7 +144,7 @@ pub(crate) struct Power {
 }
 
 /// A formulation: `N` numbers that hold the state, and how they change. Six hold place and motion; a seventh is the heat load, J/m².
-pub trait Formulation<const N: usize>: Pace<N> {
+pub trait Formulation<const N: usize>: StepBounds<N> {
     /// The numbers of a state.
     fn coordinates<S: Scalar>(state: &PlanetFixed<S>, heat_load: S) -> [S; N];
 
@@ -218,7 +218,7 @@ impl<P: Scalar> Forces<P> {
         let by_mach = models.depend_on_mach();
         let of_thesis = models.are_of_thesis();
         let (burn, canopies) = (None, None);
-        let (regime, has_switches, cells) = (Regime::default(), false, Cells::default());
+        let (mode, has_switches, cache) = (ModelMode::default(), false, LookupCache::default());
         let mut forces = Self {
             models,
             parameters,
@@ -227,11 +227,11 @@ impl<P: Scalar> Forces<P> {
             sin_cos_bank,
             burn,
             canopies,
-            regime,
+            mode,
             has_switches,
             of_thesis,
             by_mach,
-            cells,
+            cache,
         };
         forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
         forces
@@ -317,7 +317,7 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn heat_flux<S: Over<P>>(&self, density: S, air_speed: S) -> Option<HeatFlux<S>> {
         let heating = self.models.heating.as_ref()?;
-        Some(heating.heat_flux(self.regime.of(Switch::Radiation), density, air_speed))
+        Some(heating.heat_flux(self.mode.of(Switch::Radiation), density, air_speed))
     }
 
     /// The thrust over the mass, m/s², where there is one.
@@ -328,7 +328,7 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn thrust<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Option<Vector3<S>> {
         let burn = self.burn.as_ref()?;
-        let acceleration = burn.lightness(time) * burn.acceleration;
+        let acceleration = burn.mass_ratio(time) * burn.acceleration;
         Some(along(burn.along, &self.models.planet, time, state) * acceleration)
     }
 
@@ -394,9 +394,9 @@ impl<P: Scalar> Forces<P> {
     ) -> Flow<S> {
         let density_and_mach = (!THESIS && self.by_mach).then(|| {
             let (density, sound) = self.models.atmosphere.density_and_sound(
-                self.regime.of(Switch::Atmosphere),
+                self.mode.of(Switch::Atmosphere),
                 altitude,
-                &self.cells.atmosphere,
+                &self.cache.atmosphere,
             );
             (density, directions.speed * sound.recip())
         });
@@ -410,7 +410,7 @@ impl<P: Scalar> Forces<P> {
             _ if THESIS => None,
             Wind::Still => None,
             Wind::Constant { east, north } => Some([S::from(*east), S::from(*north)]),
-            Wind::Table(table) => Some(table.velocity(self.regime.of(Switch::Wind), altitude, &self.cells.wind)),
+            Wind::Table(table) => Some(table.velocity(self.mode.of(Switch::Wind), altitude, &self.cache.wind)),
         }
     }
 
@@ -419,11 +419,9 @@ impl<P: Scalar> Forces<P> {
     fn density<const THESIS: bool, S: Over<P>>(&self, flow: &Flow<S>) -> S {
         let of_model = match flow.density_and_mach {
             Some((density, _)) => density,
-            None => self.models.atmosphere.density(
-                self.regime.of(Switch::Atmosphere),
-                flow.altitude,
-                &self.cells.atmosphere,
-            ),
+            None => {
+                self.models.atmosphere.density(self.mode.of(Switch::Atmosphere), flow.altitude, &self.cache.atmosphere)
+            }
         };
         of_model * self.parameters.density
     }
@@ -434,7 +432,7 @@ impl<P: Scalar> Forces<P> {
         let speed = flow.directions.speed;
         let pressure = speed * speed * 0.5;
         let over_mass = |force_over_mass: S| match &self.burn {
-            Some(burn) if !THESIS => force_over_mass * burn.lightness(time),
+            Some(burn) if !THESIS => force_over_mass * burn.mass_ratio(time),
             _ => force_over_mass,
         };
         let acceleration = over_mass(pressure * self.area_over_mass);
@@ -456,14 +454,14 @@ impl<P: Scalar> Forces<P> {
     /// The coefficients of the model, if they are not all in the parameters.
     #[inline(always)]
     fn coefficients<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Option<Coefficients<S>> {
-        let cells = &self.cells.angle_of_attack_and_mach;
-        let [alpha, mach] = [Switch::TableAngleOfAttack, Switch::Mach].map(|switch| self.regime.of(switch));
+        let cache = &self.cache.angle_of_attack_and_mach;
+        let [alpha, mach] = [Switch::TableAngleOfAttack, Switch::Mach].map(|switch| self.mode.of(switch));
         match &self.models.aerodynamics {
             _ if THESIS => None,
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => None,
-            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &cells[1])),
+            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &cache[1])),
             Aerodynamics::AlphaMachTable(table) => {
-                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.mach(), cells))
+                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.mach(), cache))
             }
         }
     }
@@ -483,14 +481,13 @@ impl<P: Scalar> Forces<P> {
     /// σ, rad.
     #[inline(always)]
     fn bank_angle<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        flow.angle(&self.models.control.bank_angle, self.regime.of(Switch::BankAngle), time)
-            + self.parameters.bank_angle
+        flow.angle(&self.models.control.bank_angle, self.mode.of(Switch::BankAngle), time) + self.parameters.bank_angle
     }
 
     /// α, rad.
     #[inline(always)]
     fn angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        flow.angle(&self.models.control.angle_of_attack, self.regime.of(Switch::AngleOfAttack), time)
+        flow.angle(&self.models.control.angle_of_attack, self.mode.of(Switch::AngleOfAttack), time)
     }
 }
 
@@ -524,12 +521,12 @@ impl<S: Scalar> Flow<S> {
         self.density_and_mach.map_or(S::zero(), |(_, mach)| mach)
     }
 
-    /// An angle, rad, by the formula of a stretch of its schedule.
+    /// An angle, rad, by the formula of a segment of its schedule.
     #[inline(always)]
-    fn angle(&self, command: &Command, stretch: usize, time: S) -> S {
+    fn angle(&self, command: &Command, segment: usize, time: S) -> S {
         match command {
             Command::Constant(angle) => S::from(*angle),
-            Command::Schedule(schedule) => schedule.angle(stretch, self.quantity(schedule.against(), time)),
+            Command::Schedule(schedule) => schedule.angle(segment, self.quantity(schedule.against(), time)),
         }
     }
 

@@ -16,7 +16,7 @@ use crate::coordinates::{GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
-use crate::plain::apart;
+use crate::number_text::apart;
 use crate::planet::Planet;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
@@ -298,8 +298,8 @@ impl Case {
     /// What acts on the vehicle at the start.
     pub fn forces(&self) -> Forces {
         let mut forces = Phase::first(self).forces(self);
-        // Where no regime holds at the start, the flight says so.
-        let _ = forces.settle(0.0, &self.initial_state);
+        // Where no mode holds at the start, the flight says so.
+        let _ = forces.enter_mode_of(0.0, &self.initial_state);
         forces
     }
 

@@ -16,13 +16,13 @@ use crate::coordinates::{FlightPath, GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Engine, Quantity, Trigger};
 use crate::integrate::{System, follow};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, Burn, Cartesian, Forces, Formulation, Moment, Parameters, Regime, Spherical, moving};
+use crate::motion::{self, Burn, Cartesian, Forces, Formulation, ModelMode, Parameters, Spherical, StateRate, moving};
 use crate::parachute::{Canopies, Canopy};
 use crate::propulsion::Impulse;
 use crate::scalar::Scalar;
 use crate::scenario::{Case, Equations, Phase};
 use crate::simulate::SimulationError;
-use crate::trajectory::{Flown, Happening, Termination, Trajectory};
+use crate::trajectory::{EventRecord, Flown, Termination, Trajectory};
 
 /// How a quantity changes with the numbers of a case, each by itself: SI units and radians over SI units and radians.
 ///
@@ -203,7 +203,7 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     start: &FlightPath<Dual>,
     interrupt: &dyn Interrupt,
 ) -> Result<Outputs, SimulationError> {
-    let Flown { legs, happenings, end, arrival, .. } = &flight.flown;
+    let Flown { steps, event_records, end, arrival, .. } = &flight.flown;
     let start = start.to_planet_fixed();
     let track = GreatCircle::of(&start);
     let mut state = F::coordinates(&start, Dual::from(0.0));
@@ -212,29 +212,29 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     let triggers = flight.case.events.iter().map(|event| &event.when).chain(&flight.case.stop.when);
     let awaited: BTreeSet<usize> = triggers.filter_map(Trigger::awaited).collect();
     let mut stage = Stage::first(flight, parameters);
-    let mut forces = stage.forces(flight.flown.start.regime);
+    let mut forces = stage.forces(flight.flown.start.mode);
     let mut motion = formulation(forces.clone());
-    let mut happenings = happenings.iter().peekable();
-    for leg in legs {
-        let (time, length) = (leg.start_time(), leg.end_time() - leg.start_time());
+    let mut event_records = event_records.iter().peekable();
+    for step in steps {
+        let (time, length) = (step.start_time(), step.end_time() - step.start_time());
         if interrupt.is_raised() {
             return Err(SimulationError::Interrupted { time });
         }
-        let is_awaited = |happening: &&Happening| happening.before.time <= time && awaited.contains(&happening.event);
-        if (leg.phase, leg.regime) != (stage.phase, forces.regime()) || happenings.peek().is_some_and(is_awaited) {
+        let is_awaited = |record: &&EventRecord| record.before.time <= time && awaited.contains(&record.event);
+        if (step.phase, step.mode) != (stage.phase, forces.mode()) || event_records.peek().is_some_and(is_awaited) {
             let now: Vec<_> =
-                std::iter::from_fn(|| happenings.next_if(|happening| happening.before.time <= time)).collect();
+                std::iter::from_fn(|| event_records.next_if(|record| record.before.time <= time)).collect();
             let place = Place { time, rates: motion.derivative(time.into(), &state), state, track: &track };
-            let delay = turning_delay::<F, N>(&stage, &forces, &now, leg.regime, &place, &delays);
+            let delay = turning_delay::<F, N>(&stage, &forces, &now, step.mode, &place, &delays);
             // So long the rates before the turn hold, and not yet those after it.
             state = from_fn(|i| state[i] + place.rates[i] * delay);
-            for happening in now {
-                delays[happening.event] = delay;
-                stage = stage.changed_by_time(happening.before.phase, delay).after(happening, delay);
-                state = push::<F, N>(flight, happening, delay, &state);
+            for record in now {
+                delays[record.event] = delay;
+                stage = stage.changed_by_time(record.before.phase, delay).after(record, delay);
+                state = push::<F, N>(flight, record, delay, &state);
             }
-            stage = stage.changed_by_time(leg.phase, delay);
-            forces = stage.forces(leg.regime);
+            stage = stage.changed_by_time(step.phase, delay);
+            forces = stage.forces(step.mode);
             motion = formulation(forces.clone());
             let next = motion.derivative(time.into(), &state);
             state = from_fn(|i| state[i] - next[i] * delay);
@@ -255,8 +255,8 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
         Some(Trigger::After { event, .. }) => delays[event],
     };
     state = from_fn(|i| state[i] + place.rates[i] * delay);
-    for happening in happenings {
-        state = push::<F, N>(flight, happening, delay, &state);
+    for record in event_records {
+        state = push::<F, N>(flight, record, delay, &state);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&state));
@@ -274,14 +274,14 @@ struct Place<'a, const N: usize> {
 
 impl<const N: usize> Place<'_, N> {
     /// The values of the state, moving along the flow.
-    fn moving<F: Formulation<N>>(&self) -> Moment {
+    fn moving<F: Formulation<N>>(&self) -> StateRate {
         let values = moving(&self.state.map(Scalar::value), &self.rates.map(Scalar::value));
-        Moment::at::<F, N>(Dual64::new(self.time, 1.0), &values)
+        StateRate::at::<F, N>(Dual64::new(self.time, 1.0), &values)
     }
 
     /// A quantity, as the numbers vary.
     fn quantity<F: Formulation<N>>(&self, quantity: Quantity, forces: &Forces<Dual>) -> Dual {
-        forces.quantity(quantity, &Moment::at::<F, N>(Dual::from(self.time), &self.state), self.track)
+        forces.quantity(quantity, &StateRate::at::<F, N>(Dual::from(self.time), &self.state), self.track)
     }
 }
 
@@ -289,8 +289,8 @@ impl<const N: usize> Place<'_, N> {
 fn turning_delay<F: Formulation<N>, const N: usize>(
     stage: &Stage,
     forces: &Forces<Dual>,
-    now: &[&Happening],
-    next: Regime,
+    now: &[&EventRecord],
+    next: ModelMode,
     place: &Place<N>,
     delays: &[Dual],
 ) -> Dual {
@@ -303,7 +303,7 @@ fn turning_delay<F: Formulation<N>, const N: usize>(
         }
         off.abs() <= ON_VALUE * value.abs().max(1.0)
     };
-    let delay_of = |happening: &&Happening| match stage.flight.case.events[happening.event].when {
+    let delay_of = |record: &&EventRecord| match stage.flight.case.events[record.event].when {
         Trigger::Condition(condition) => {
             meets(&condition).then(|| condition_delay::<F, N>(stage, forces, condition.quantity, place))
         }
@@ -315,7 +315,7 @@ fn turning_delay<F: Formulation<N>, const N: usize>(
     if let Some(change) = stage.next_change_by_time().filter(|change| change.value() <= place.time) {
         return change - change.value();
     }
-    let plain = stage.plain_forces(forces.regime());
+    let plain = stage.plain_forces(forces.mode());
     let values = F::planet_fixed(&place.state.map(Scalar::value));
     let Some(switch) = plain.first_to_turn(next, place.time, &values) else {
         return Dual::from(0.0);
@@ -335,7 +335,7 @@ fn condition_delay<F: Formulation<N>, const N: usize>(
     if quantity == Quantity::Time {
         return Dual::from(0.0);
     }
-    let plain = stage.plain_forces(forces.regime());
+    let plain = stage.plain_forces(forces.mode());
     let track = place.track.map(|number| Dual64::from(number.value()));
     let rate = plain.quantity(quantity, &place.moving::<F>(), &track).eps;
     delay(place.quantity::<F>(quantity, forces), rate)
@@ -349,15 +349,15 @@ fn delay(quantity: Dual, rate: f64) -> Dual {
 /// The state after the impulse of an event, if it has one.
 fn push<F: Formulation<N>, const N: usize>(
     flight: &Trajectory,
-    happening: &Happening,
+    record: &EventRecord,
     delay: Dual,
     state: &[Dual; N],
 ) -> [Dual; N] {
-    let effect = &flight.case.events[happening.event].then;
+    let effect = &flight.case.events[record.event].then;
     let Some(Impulse { along, speed_change }) = effect.impulse else { return *state };
     let heat_load = state.get(6).copied().unwrap_or(Dual::from(0.0));
     let state = F::planet_fixed(state);
-    let direction = motion::along(along, &flight.case.planet, delay + happening.before.time, &state);
+    let direction = motion::along(along, &flight.case.planet, delay + record.before.time, &state);
     let velocity = state.velocity + direction * Dual::from(speed_change);
     F::coordinates(&PlanetFixed { velocity, ..state }, heat_load)
 }
@@ -418,7 +418,7 @@ impl<'a> Stage<'a> {
         self.burnout().into_iter().chain(inflations).min_by(|a, b| a.value().total_cmp(&b.value()))
     }
 
-    fn forces(&self, regime: Regime) -> Forces<Dual> {
+    fn forces(&self, mode: ModelMode) -> Forces<Dual> {
         let over_mass = self.mass.recip();
         let burn = self.as_flown().thrust.map(|thrust| Burn {
             along: thrust.along,
@@ -430,14 +430,14 @@ impl<'a> Stage<'a> {
         let canopies = self.as_flown().canopies.iter().copied().zip(self.deployed.iter().copied());
         let canopies = Canopies::of(canopies, over_mass);
         let mut forces = Forces::new(models, self.parameters).of_mass(self.mass).burning(burn).under(canopies);
-        forces.enter(regime);
+        forces.enter(mode);
         forces
     }
 
     /// The same without derivatives.
-    fn plain_forces(&self, regime: Regime) -> Forces {
+    fn plain_forces(&self, mode: ModelMode) -> Forces {
         let mut forces = self.as_flown().forces(&self.flight.case);
-        forces.enter(regime);
+        forces.enter(mode);
         forces
     }
 
@@ -457,12 +457,12 @@ impl<'a> Stage<'a> {
     }
 
     /// The stage after an event.
-    fn after(self, happening: &Happening, delay: Dual) -> Self {
-        let effect = &self.flight.case.events[happening.event].then;
+    fn after(self, record: &EventRecord, delay: Dual) -> Self {
+        let effect = &self.flight.case.events[record.event].then;
         if effect.is_none() {
             return self;
         }
-        let time = delay + happening.before.time;
+        let time = delay + record.before.time;
         let burnt = self.burnt(time);
         let mass = effect.mass.map_or(self.mass - burnt, Dual::from);
         let propellant = match effect.engine {
@@ -473,7 +473,7 @@ impl<'a> Stage<'a> {
         let stays = |(canopy, _): &(&Canopy, &Dual)| !effect.release.contains(&canopy.event);
         let canopies = self.as_flown().canopies.iter().zip(&self.deployed).filter(stays);
         let deployed = canopies.map(|(_, deployed)| *deployed).chain(effect.deploy.map(|_| time)).collect();
-        let phase = happening.after.phase;
+        let phase = record.after.phase;
         let mut next = Self { phase, since: time, propellant, deployed, ..self.with_mass(mass) };
         let vehicle = &next.as_flown().vehicle;
         let as_flown = self.flight.case.parameters_of(vehicle);

@@ -1,30 +1,31 @@
 //! The flight: from a scenario to a trajectory.
 
-mod abreast;
-mod alarms;
-mod descent;
-mod extremes;
+mod conditions;
+mod detector;
 mod flight;
-mod passage;
-mod watch;
+mod lanes;
+mod model_boundaries;
+mod peak_tracker;
+mod step_view;
+mod stop_altitude;
 
-pub use abreast::arrivals;
+pub use lanes::arrivals;
 
 use crate::integrate::Step;
 use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
-use crate::plain::Plain;
+use crate::number_text::NumberText;
 use crate::scenario::{Equations, Phase, Scenario};
-use crate::trajectory::{Arrival, Flown, Leg, LegStep, Trajectory};
-use extremes::Extremes;
+use crate::trajectory::{Arrival, Flown, StepOfEither, StoredStep, Trajectory};
 use flight::{Flight, Log};
-use passage::Passage;
+use peak_tracker::PeakTracker;
+use step_view::StepView;
 
 /// Why a flight could not be finished.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The limit on the number of steps was reached.
-    #[error("the flight took more than {limit} integration steps; it got to t = {} s", Plain(*.time))]
+    #[error("the flight took more than {limit} integration steps; it got to t = {} s", NumberText(*.time))]
     StepLimit {
         /// The instant reached, s.
         time: f64,
@@ -32,7 +33,7 @@ pub enum SimulationError {
         limit: usize,
     },
     /// The spherical equations of motion break down.
-    #[error("the spherical equations of motion are singular {}, reached at t = {} s", place(*.at), Plain(*.time))]
+    #[error("the spherical equations of motion are singular {}, reached at t = {} s", place(*.at), NumberText(*.time))]
     Singularity {
         /// The instant reached, s.
         time: f64,
@@ -40,13 +41,13 @@ pub enum SimulationError {
         at: Singularity,
     },
     /// No step that advances the time meets the tolerance.
-    #[error("the motion changes too fast to be followed at t = {} s", Plain(*.time))]
+    #[error("the motion changes too fast to be followed at t = {} s", NumberText(*.time))]
     TooStiff {
         /// The instant reached, s.
         time: f64,
     },
     /// A quantity of the flight is too large for a floating-point number.
-    #[error("the loads at t = {} s are too large for a floating-point number", Plain(*.time))]
+    #[error("the loads at t = {} s are too large for a floating-point number", NumberText(*.time))]
     Overflow {
         /// The instant reached, s.
         time: f64,
@@ -54,7 +55,7 @@ pub enum SimulationError {
     /// On either side of a boundary the motion leads back across it.
     #[error(
         "{} switches back and forth from t = {} s on: on either side of one of its entries the flight is led back to it",
-        name(*.switch), Plain(*.time)
+        name(*.switch), NumberText(*.time)
     )]
     Chatter {
         /// The instant reached, s.
@@ -63,7 +64,7 @@ pub enum SimulationError {
         switch: Switch,
     },
     /// The thrust has burnt the vehicle up.
-    #[error("by t = {} s the thrust has burnt all the mass that there was", Plain(*.time))]
+    #[error("by t = {} s the thrust has burnt all the mass that there was", NumberText(*.time))]
     NothingLeft {
         /// The instant reached, s.
         time: f64,
@@ -82,13 +83,13 @@ pub enum SimulationError {
         altitude: f64,
     },
     /// The steps that the flight keeps have no room in memory.
-    #[error("no room in memory for the steps after t = {} s", Plain(*.time))]
+    #[error("no room in memory for the steps after t = {} s", NumberText(*.time))]
     NoRoom {
         /// The instant reached, s.
         time: f64,
     },
     /// Whoever asked for the flight ended it.
-    #[error("interrupted at t = {} s", Plain(*.time))]
+    #[error("interrupted at t = {} s", NumberText(*.time))]
     Interrupted {
         /// The instant reached, s.
         time: f64,
@@ -124,10 +125,10 @@ fn name(switch: Switch) -> &'static str {
 pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     match (case.solver.equations, case.heating) {
-        (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), LegStep::Plain, interrupt),
-        (Equations::Spherical, None) => record(scenario, Spherical(case.forces()), LegStep::Plain, interrupt),
-        (Equations::Cartesian, Some(_)) => record(scenario, Cartesian(case.forces()), LegStep::Heated, interrupt),
-        (Equations::Spherical, Some(_)) => record(scenario, Spherical(case.forces()), LegStep::Heated, interrupt),
+        (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), StepOfEither::Unheated, interrupt),
+        (Equations::Spherical, None) => record(scenario, Spherical(case.forces()), StepOfEither::Unheated, interrupt),
+        (Equations::Cartesian, Some(_)) => record(scenario, Cartesian(case.forces()), StepOfEither::Heated, interrupt),
+        (Equations::Spherical, Some(_)) => record(scenario, Spherical(case.forces()), StepOfEither::Heated, interrupt),
     }
 }
 
@@ -155,39 +156,39 @@ pub fn arrival(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Arrival
 fn record<F: Formulation<N>, const N: usize>(
     scenario: &Scenario,
     motion: F,
-    keep: impl Fn(Step<N>) -> LegStep,
+    keep: impl Fn(Step<N>) -> StepOfEither,
     interrupt: &dyn Interrupt,
 ) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     let mut flight = Flight::start(scenario, motion, interrupt)?;
-    let mut legs = Vec::with_capacity(TYPICAL_STEPS);
-    let mut extremes = Extremes::new(&flight.motion, &flight.integrator, case.may_lift())?;
+    let mut steps = Vec::with_capacity(TYPICAL_STEPS);
+    let mut peak_tracker = PeakTracker::new(&flight.motion, &flight.integrator, case.may_lift())?;
     let start = flight.instant();
-    let arrival = fly(&mut flight, |passage| {
-        extremes.observe(passage)?;
-        let regime = passage.motion.forces().regime();
-        legs.push(Leg { step: keep(passage.step.clone()), phase: passage.phase, regime });
-        if legs.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(legs.capacity() * size_of::<Leg>()) {
-            return Err(SimulationError::NoRoom { time: passage.step.end_time });
+    let arrival = fly(&mut flight, |view| {
+        peak_tracker.observe(view)?;
+        let mode = view.motion.forces().mode();
+        steps.push(StoredStep { step: keep(Step::clone(&view.step)), phase: view.phase, mode });
+        if steps.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(steps.capacity() * size_of::<StoredStep>()) {
+            return Err(SimulationError::NoRoom { time: view.step.end_time });
         }
         Ok(())
     })?;
     let end = flight.instant();
-    extremes.end(flight.motion.forces(), &end)?;
-    let Extremes { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = extremes;
-    let Log { mut phases, happenings, warnings: others } = flight.log;
+    peak_tracker.end(flight.motion.forces(), &end)?;
+    let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
+    let Log { mut phases, event_records, warnings: others } = flight.log;
     phases.insert(0, Phase::first(case));
     warnings.extend(others);
     Ok(Trajectory::new(
         case.clone(),
-        Flown { start, legs, phases, happenings, end, arrival, peaks, peaks_of_phases, warnings },
+        Flown { start, steps, phases, event_records, end, arrival, peaks, peaks_of_phases, warnings },
     ))
 }
 
 /// Flies to the end and shows every step on the way.
 fn fly<F: Formulation<N>, const N: usize>(
     flight: &mut Flight<F, N>,
-    mut observe: impl FnMut(&Passage<F, N>) -> Result<(), SimulationError>,
+    mut observe: impl FnMut(&StepView<F, N>) -> Result<(), SimulationError>,
 ) -> Result<Arrival, SimulationError> {
     if let Some(arrival) = flight.begin()? {
         return Ok(arrival);

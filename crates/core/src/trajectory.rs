@@ -1,20 +1,20 @@
-//! The answer: how the flight ended, its extremes, and its state at any time.
+//! The answer: how the flight ended, its peak_tracker, and its state at any time.
 
 mod ground_track;
-mod leg;
 mod phases;
 mod sampling;
+mod stored_step;
 
 pub use phases::{FlightPhase, PhaseStart};
 pub use sampling::{Sampling, TooManyInstants};
 
-pub(crate) use leg::{Leg, LegStep, Motion};
+pub(crate) use stored_step::{Motion, StepOfEither, StoredStep};
 
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use ground_track::GroundTrack;
-use leg::LegInterpolant;
+use stored_step::InterpolantOfEither;
 
 use crate::atmosphere::AtmosphereSample;
 use crate::coordinates::{
@@ -24,12 +24,12 @@ use crate::coordinates::{
 use crate::heating;
 use crate::integrate::Statistics;
 use crate::interrupt::Interrupt;
-use crate::motion::{Cartesian, Forces, Loads, Regime, Spherical, WIND_FADE_ANGLE};
+use crate::motion::{Cartesian, Forces, Loads, ModelMode, Spherical, WIND_FADE_ANGLE};
 use crate::planet::Planet;
 use crate::scenario::{Case, Equations, Phase};
 use crate::wind::Wind;
 
-pub use crate::motion::Lookup;
+pub use crate::motion::TableId;
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,7 +122,7 @@ pub enum Warning {
     /// From this time on a table, or a model of a given range, was asked for more than it holds, and gave what it has at its edge.
     OutsideTable {
         /// Which.
-        table: Lookup,
+        table: TableId,
         /// s.
         time: f64,
         /// Along the radius vector, m.
@@ -302,12 +302,12 @@ pub(crate) struct Instant {
     pub(crate) heat_load: Option<f64>,
     /// The number of the phase.
     pub(crate) phase: usize,
-    pub(crate) regime: Regime,
+    pub(crate) mode: ModelMode,
 }
 
 /// An event that happened, on both sides of its effect.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Happening {
+pub(crate) struct EventRecord {
     pub(crate) event: usize,
     pub(crate) before: Instant,
     pub(crate) after: Instant,
@@ -327,10 +327,10 @@ pub struct Trajectory {
 #[derive(Clone, Debug)]
 pub(crate) struct Flown {
     pub(crate) start: Instant,
-    pub(crate) legs: Vec<Leg>,
+    pub(crate) steps: Vec<StoredStep>,
     /// One more than there were events that changed anything.
     pub(crate) phases: Vec<Phase>,
-    pub(crate) happenings: Vec<Happening>,
+    pub(crate) event_records: Vec<EventRecord>,
     /// Into which it would go on.
     pub(crate) end: Instant,
     pub(crate) arrival: Arrival,
@@ -357,8 +357,8 @@ impl Trajectory {
         let (Some(heating), Some(peaks)) = (self.case.heating, self.peaks().heating) else { return Vec::new() };
         let nose_radius = self.case.vehicle.nose_radius.unwrap_or_default();
         let of_peak = |peak: Peak, range: heating::Range| {
-            let Instant { time, state, phase, regime, .. } = self.instant_at(peak.time);
-            let Loads { density, air_speed, .. } = self.forces(phase, regime).loads(time, &state);
+            let Instant { time, state, phase, mode, .. } = self.instant_at(peak.time);
+            let Loads { density, air_speed, .. } = self.forces(phase, mode).loads(time, &state);
             let quantities = [
                 ("speed relative to the air", "m/s", air_speed, range.speed),
                 ("density", "kg/m³", density, range.density),
@@ -381,13 +381,13 @@ impl Trajectory {
     fn wind_fades(&self) -> Option<f64> {
         let motion = match self.case.wind {
             Wind::Still => return None,
-            Wind::Constant { .. } | Wind::Table(_) => self.motion(self.flown.legs.first()?),
+            Wind::Constant { .. } | Wind::Table(_) => self.motion(self.flown.steps.first()?),
         };
-        let fades = |leg: &&Leg| {
-            let position = motion.end(&leg.step).position;
+        let fades = |step: &&StoredStep| {
+            let position = motion.end(&step.step).position;
             position.x.hypot(position.y) < WIND_FADE_ANGLE * position.norm()
         };
-        self.flown.legs.iter().find(fades).map(Leg::end_time)
+        self.flown.steps.iter().find(fades).map(StoredStep::end_time)
     }
 
     /// How the flight ended.
@@ -432,17 +432,17 @@ impl Trajectory {
 
     /// The events that happened, in order.
     pub fn events(&self) -> impl Iterator<Item = EventPoint> {
-        let point = |happening: &Happening| EventPoint {
-            event: happening.event,
-            before: self.point_of(&happening.before),
-            after: self.point_of(&happening.after),
+        let point = |record: &EventRecord| EventPoint {
+            event: record.event,
+            before: self.point_of(&record.before),
+            after: self.point_of(&record.after),
         };
-        self.flown.happenings.iter().map(point)
+        self.flown.event_records.iter().map(point)
     }
 
     /// The bytes that its steps take in memory.
     pub fn held(&self) -> usize {
-        size_of_val(self.flown.legs.as_slice())
+        size_of_val(self.flown.steps.as_slice())
     }
 
     /// The state at a time, s; before the start it is the initial one, after the end the final one; at an event that after its effect.
@@ -451,13 +451,13 @@ impl Trajectory {
     }
 
     fn instant_at(&self, time: f64) -> Instant {
-        let following = self.flown.legs.partition_point(|leg| leg.end_time() <= time);
-        match self.flown.legs.get(following) {
+        let following = self.flown.steps.partition_point(|step| step.end_time() <= time);
+        match self.flown.steps.get(following) {
             _ if time <= 0.0 => self.flown.start,
-            Some(leg) => {
-                let motion = self.motion(leg);
-                let (state, heat_load) = motion.interpolant(&leg.step).at(&motion, time);
-                Instant { time, state, heat_load, phase: leg.phase, regime: leg.regime }
+            Some(step) => {
+                let motion = self.motion(step);
+                let (state, heat_load) = motion.interpolant(&step.step).at(&motion, time);
+                Instant { time, state, heat_load, phase: step.phase, mode: step.mode }
             }
             None => self.flown.end,
         }
@@ -465,36 +465,36 @@ impl Trajectory {
 
     /// D/m, m/s², at a point of a flight of constant coefficients, of one phase.
     pub fn drag_deceleration(&self, point: &FlightPoint) -> f64 {
-        self.forces(0, self.flown.start.regime).drag_under(point.loads.dynamic_pressure)
+        self.forces(0, self.flown.start.mode).drag_under(point.loads.dynamic_pressure)
     }
 
     /// The states at ascending times, s.
     ///
     /// At loose tolerances the motion of a very light vehicle may overflow between the ends of a step: see [`FlightPoint::is_finite`].
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
-        let legs = &self.flown.legs;
-        let mut following = times.first().map_or(0, |first| legs.partition_point(|leg| leg.end_time() <= *first));
-        let mut known: Option<(usize, Motion, LegInterpolant)> = None;
+        let steps = &self.flown.steps;
+        let mut following = times.first().map_or(0, |first| steps.partition_point(|step| step.end_time() <= *first));
+        let mut known: Option<(usize, Motion, InterpolantOfEither)> = None;
         let mut point = |time: f64| {
-            while legs.get(following).is_some_and(|leg| leg.end_time() <= time) {
+            while steps.get(following).is_some_and(|step| step.end_time() <= time) {
                 following += 1;
             }
-            match legs.get(following) {
+            match steps.get(following) {
                 _ if time <= 0.0 => self.initial(),
-                Some(leg) => {
+                Some(step) => {
                     let (_, motion, interpolant) = match known.take() {
                         Some(of_leg) if of_leg.0 == following => known.insert(of_leg),
                         last => {
                             let motion = last.map_or_else(
-                                || self.motion(leg),
-                                |(index, motion, _)| self.going_on(motion, &legs[index], leg),
+                                || self.motion(step),
+                                |(index, motion, _)| self.going_on(motion, &steps[index], step),
                             );
-                            let interpolant = motion.interpolant(&leg.step);
+                            let interpolant = motion.interpolant(&step.step);
                             known.insert((following, motion, interpolant))
                         }
                     };
                     let (state, heat_load) = interpolant.at(motion, time);
-                    self.point(motion.forces(), leg.phase, time, &state, heat_load)
+                    self.point(motion.forces(), step.phase, time, &state, heat_load)
                 }
                 None => self.last(),
             }
@@ -502,21 +502,21 @@ impl Trajectory {
         times.iter().map(|time| point(*time)).collect()
     }
 
-    /// The equations that were integrated in a leg.
-    pub(crate) fn motion(&self, leg: &Leg) -> Motion {
-        let forces = self.forces(leg.phase, leg.regime);
+    /// The equations that were integrated in a step.
+    pub(crate) fn motion(&self, step: &StoredStep) -> Motion {
+        let forces = self.forces(step.phase, step.mode);
         match self.case.solver.equations {
             Equations::Cartesian => Motion::Cartesian(Cartesian(forces)),
             Equations::Spherical => Motion::Spherical(Spherical(forces)),
         }
     }
 
-    /// The equations of a leg that follows another, of which there are the equations.
-    pub(crate) fn going_on(&self, mut motion: Motion, from: &Leg, to: &Leg) -> Motion {
+    /// The equations of a step that follows another, of which there are the equations.
+    pub(crate) fn going_on(&self, mut motion: Motion, from: &StoredStep, to: &StoredStep) -> Motion {
         if from.phase != to.phase {
             return self.motion(to);
         }
-        motion.forces_mut().enter(to.regime);
+        motion.forces_mut().enter(to.mode);
         motion
     }
 
@@ -536,28 +536,28 @@ impl Trajectory {
     /// The ground track, unless it is interrupted.
     fn ground_track_until(&self, is_interrupted: impl Fn() -> bool) -> Option<GroundTrack> {
         let mut track = GroundTrack::default();
-        let mut known: Option<(Motion, &Leg)> = None;
+        let mut known: Option<(Motion, &StoredStep)> = None;
         let mut state = self.flown.start.state;
-        for leg in &self.flown.legs {
+        for step in &self.flown.steps {
             if is_interrupted() {
                 return None;
             }
-            let motion = known.map_or_else(|| self.motion(leg), |(motion, from)| self.going_on(motion, from, leg));
-            state = track.extend(&motion, leg, &state, &self.great_circle);
-            known = Some((motion, leg));
+            let motion = known.map_or_else(|| self.motion(step), |(motion, from)| self.going_on(motion, from, step));
+            state = track.extend(&motion, step, &state, &self.great_circle);
+            known = Some((motion, step));
         }
         Some(track)
     }
 
-    fn forces(&self, phase: usize, regime: Regime) -> Forces {
+    fn forces(&self, phase: usize, mode: ModelMode) -> Forces {
         let mut forces = self.flown.phases[phase].forces(&self.case);
-        forces.enter(regime);
+        forces.enter(mode);
         forces
     }
 
     fn point_of(&self, instant: &Instant) -> FlightPoint {
-        let Instant { time, state, heat_load, phase, regime } = instant;
-        self.point(&self.forces(*phase, *regime), *phase, *time, state, *heat_load)
+        let Instant { time, state, heat_load, phase, mode } = instant;
+        self.point(&self.forces(*phase, *mode), *phase, *time, state, *heat_load)
     }
 
     fn point(

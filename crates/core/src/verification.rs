@@ -59,21 +59,21 @@ fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64
     let energy = |state: &PlanetFixed<f64>| energy(&flight.case, state);
     let mut given = energy(&flight.case.initial_state);
     let (mut drift, mut work) = (0.0_f64, Power { drag: 0.0, thrust: 0.0 });
-    let mut happenings = flight.flown.happenings.iter().peekable();
-    for leg in &flight.flown.legs {
-        let (start, end) = (leg.start_time(), leg.end_time());
+    let mut event_records = flight.flown.event_records.iter().peekable();
+    for step in &flight.flown.steps {
+        let (start, end) = (step.start_time(), step.end_time());
         if interrupt.is_raised() {
             return Err(SimulationError::Interrupted { time: start });
         }
-        while let Some(happening) = happenings.next_if(|happening| happening.before.time <= start) {
-            given += energy(&happening.after.state) - energy(&happening.before.state);
+        while let Some(record) = event_records.next_if(|record| record.before.time <= start) {
+            given += energy(&record.after.state) - energy(&record.before.state);
         }
-        // A leg that ends where it begins has nothing inside.
+        // A step that ends where it begins has nothing inside.
         if start >= end {
             continue;
         }
-        let motion = flight.motion(leg);
-        let interpolant = motion.interpolant(&leg.step);
+        let motion = flight.motion(step);
+        let interpolant = motion.interpolant(&step.step);
         let half = (end - start) / 2.0;
         for (abscissa, weight) in GAUSS {
             for time in [start + half * (1.0 - abscissa), start + half * (1.0 + abscissa)] {
@@ -82,7 +82,7 @@ fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64
                 work.thrust += half * weight * thrust;
             }
         }
-        drift = drift.max((energy(&motion.end(&leg.step)) + work.drag - work.thrust - given).abs());
+        drift = drift.max((energy(&motion.end(&step.step)) + work.drag - work.thrust - given).abs());
     }
     Ok((drift, work))
 }

@@ -43,9 +43,9 @@ impl WindTable {
         self.velocity.range()
     }
 
-    /// The velocity to the east and to the north, m/s, at an altitude, m, by the formula of a stretch: 0 below the table, 1 inside, 2 above.
+    /// The velocity to the east and to the north, m/s, at an altitude, m, by the formula of a segment: 0 below the table, 1 inside, 2 above.
     #[inline(always)]
-    pub fn velocity<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> [S; 2] {
-        self.velocity.at(stretch, altitude, hint)
+    pub fn velocity<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> [S; 2] {
+        self.velocity.at(segment, altitude, hint)
     }
 }

@@ -30,7 +30,7 @@ pub mod warning;
 
 use std::fmt;
 
-use reentry::plain::Plain;
+use reentry::number_text::NumberText;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -80,7 +80,7 @@ pub struct Angle(pub f64, pub AngleUnit);
 impl fmt::Display for Angle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(angle, unit) = *self;
-        let angle = Plain(unit.from_radians(angle));
+        let angle = NumberText(unit.from_radians(angle));
         match unit {
             AngleUnit::Rad => write!(f, "{angle} rad"),
             AngleUnit::Deg => write!(f, "{angle}°"),

@@ -71,8 +71,8 @@ impl Column {
     }
 
     #[inline(always)]
-    fn at<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
-        let [value] = self.cubics.at(stretch, altitude, hint);
+    fn at<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
+        let [value] = self.cubics.at(segment, altitude, hint);
         S::select(value.less_than(self.least), S::from(self.least), value)
     }
 }
@@ -166,40 +166,40 @@ impl Table {
         self.log_pressure.is_some()
     }
 
-    /// Density, kg/m³, at an altitude, m, by the formula of a stretch: 0 below the table, 1 inside, 2 above.
+    /// Density, kg/m³, at an altitude, m, by the formula of a segment: 0 below the table, 1 inside, 2 above.
     #[inline(always)]
-    pub fn density<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> S {
-        exponential(&self.log_density, stretch, altitude, hint)
+    pub fn density<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
+        exponential(&self.log_density, segment, altitude, hint)
     }
 
     /// The temperature, K, at an altitude, m, if it is known.
     #[inline(always)]
-    pub fn temperature<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> Option<S> {
-        self.temperature.as_ref().map(|temperature| temperature.at(stretch, altitude, hint))
+    pub fn temperature<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> Option<S> {
+        self.temperature.as_ref().map(|temperature| temperature.at(segment, altitude, hint))
     }
 
     /// The speed of sound, m/s, at an altitude, m, if it is known: as tabulated, or √(γRT/M).
     #[inline(always)]
-    pub fn speed_of_sound<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> Option<S> {
-        let temperature = || self.temperature(stretch, altitude, hint);
+    pub fn speed_of_sound<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> Option<S> {
+        let temperature = || self.temperature(segment, altitude, hint);
         match &self.sound {
             Sound::Unknown => None,
-            Sound::Tabulated(speed) => Some(speed.at(stretch, altitude, hint)),
+            Sound::Tabulated(speed) => Some(speed.at(segment, altitude, hint)),
             Sound::OfTemperature(square) => temperature().map(|kelvin| (kelvin * *square).sqrt()),
             Sound::OfTemperatureAndGas(square) => {
-                temperature().map(|kelvin| (kelvin * square.at(stretch, altitude, hint)).sqrt())
+                temperature().map(|kelvin| (kelvin * square.at(segment, altitude, hint)).sqrt())
             }
         }
     }
 
-    /// The air at an altitude, m, by the formulas of a stretch.
+    /// The air at an altitude, m, by the formulas of a segment.
     #[inline(always)]
-    pub fn sample<S: Scalar>(&self, stretch: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
+    pub fn sample<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
         AtmosphereSample {
-            density: self.density(stretch, altitude, hint),
-            temperature: self.temperature(stretch, altitude, hint),
-            pressure: self.log_pressure.as_ref().map(|pressure| exponential(pressure, stretch, altitude, hint)),
-            speed_of_sound: self.speed_of_sound(stretch, altitude, hint),
+            density: self.density(segment, altitude, hint),
+            temperature: self.temperature(segment, altitude, hint),
+            pressure: self.log_pressure.as_ref().map(|pressure| exponential(pressure, segment, altitude, hint)),
+            speed_of_sound: self.speed_of_sound(segment, altitude, hint),
         }
     }
 
@@ -216,13 +216,13 @@ impl Table {
 
 /// e to the power of an interpolated logarithm; from e^±700 on it stays, so that it is a finite positive number everywhere.
 #[inline(always)]
-fn exponential<S: Scalar>(logarithm: &Cubics<1>, stretch: usize, altitude: S, hint: &Hint) -> S {
+fn exponential<S: Scalar>(logarithm: &Cubics<1>, segment: usize, altitude: S, hint: &Hint) -> S {
     // Air that grows denser at the top of its table goes on as dense as there.
     let [_, [slope_at_top]] = logarithm.end_slopes();
-    let [logarithm] = if stretch > 1 && slope_at_top > 0.0 {
-        logarithm.at(stretch, altitude, hint)
+    let [logarithm] = if segment > 1 && slope_at_top > 0.0 {
+        logarithm.at(segment, altitude, hint)
     } else {
-        logarithm.extrapolated(stretch, altitude, hint)
+        logarithm.extrapolated(segment, altitude, hint)
     };
     let logarithm = S::select(logarithm.less_than(-700.0), S::from(-700.0), logarithm);
     S::select(logarithm.less_than(700.0), logarithm, S::from(700.0)).exp()
@@ -231,8 +231,8 @@ fn exponential<S: Scalar>(logarithm: &Cubics<1>, stretch: usize, altitude: S, hi
 /// The altitude, m, above which the density is less than a share of the greatest from altitude 0 on.
 fn sensible_altitude(altitude: &[f64], log_density: &[f64], interpolated: &Cubics<1>) -> f64 {
     let [first, last] = *interpolated.range();
-    let stretch = usize::from(first <= 0.0) + usize::from(last <= 0.0);
-    let [at_0] = interpolated.extrapolated(stretch, 0.0, &Hint::default());
+    let segment = usize::from(first <= 0.0) + usize::from(last <= 0.0);
+    let [at_0] = interpolated.extrapolated(segment, 0.0, &Hint::default());
     let above_0 = altitude.iter().zip(log_density).filter(|(altitude, _)| **altitude > 0.0);
     let threshold =
         above_0.fold(at_0, |greatest: f64, (_, logarithm)| greatest.max(*logarithm)) - SENSIBLE_SCALE_HEIGHTS;

@@ -21,9 +21,9 @@
 //!
 //! # Stretches
 //!
-//! An integrator takes the formula of one stretch between [`BOUNDARIES`] at a time, and continues it where a trial stage looks over its
+//! An integrator takes the formula of one segment between [`BOUNDARIES`] at a time, and continues it where a trial stage looks over its
 //! end: the layer of mixed air keeps its lapse rate, until the temperature is a tenth of that at its base. The density above 86 km
-//! has one formula for all stretches; below 86 km, where a trial stage may bring it, its logarithm goes on in a straight line.
+//! has one formula for all segments; below 86 km, where a trial stage may bring it, its logarithm goes on in a straight line.
 //!
 //! # Reference
 //! U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562, U.S. Government Printing Office, Washington, D.C., October 1976: "the standard" here.
@@ -90,63 +90,63 @@ pub const BOUNDARIES: [f64; 17] = [
     TOP,
 ];
 
-/// How many of the [`BOUNDARIES`] lie at or below a geometric altitude, m: the stretch in which it is.
+/// How many of the [`BOUNDARIES`] lie at or below a geometric altitude, m: the segment in which it is.
 #[inline(always)]
-pub fn stretch<S: Scalar<Mask = bool>>(altitude: S) -> usize {
+pub fn segment<S: Scalar<Mask = bool>>(altitude: S) -> usize {
     BOUNDARIES.iter().filter(|boundary| !altitude.less_than(**boundary)).count()
 }
 
 /// Density, kg/m³, at a geometric altitude, m.
 #[inline(always)]
 pub fn density<S: Scalar<Mask = bool>>(altitude: S) -> S {
-    density_in(stretch(altitude), altitude)
+    density_in(segment(altitude), altitude)
 }
 
 /// The air at a geometric altitude, m.
 #[inline(always)]
 pub fn sample<S: Scalar<Mask = bool>>(altitude: S) -> AtmosphereSample<S> {
-    sample_in(stretch(altitude), altitude)
+    sample_in(segment(altitude), altitude)
 }
 
-/// Density, kg/m³, at a geometric altitude, m, by the formula of a stretch.
+/// Density, kg/m³, at a geometric altitude, m, by the formula of a segment.
 #[inline(always)]
-pub fn density_in<S: Scalar>(stretch: usize, altitude: S) -> S {
-    let altitude = within_bounds(stretch, altitude);
-    match TABLE.layers.get(stretch) {
+pub fn density_in<S: Scalar>(segment: usize, altitude: S) -> S {
+    let altitude = within_bounds(segment, altitude);
+    match TABLE.layers.get(segment) {
         Some(layer) => layer.density(&layer.place(altitude)),
         None => TABLE.density_of_gases(altitude),
     }
 }
 
-/// Density, kg/m³, and speed of sound, m/s, at a geometric altitude, m, by the formulas of a stretch.
+/// Density, kg/m³, and speed of sound, m/s, at a geometric altitude, m, by the formulas of a segment.
 #[inline(always)]
-pub fn density_and_sound_in<S: Scalar>(stretch: usize, altitude: S) -> (S, S) {
-    let altitude = within_bounds(stretch, altitude);
-    match TABLE.layers.get(stretch) {
+pub fn density_and_sound_in<S: Scalar>(segment: usize, altitude: S) -> (S, S) {
+    let altitude = within_bounds(segment, altitude);
+    match TABLE.layers.get(segment) {
         Some(layer) => {
             let place = layer.place(altitude);
             (layer.density(&place), speed_of_sound(layer.molecular_scale_temperature(&place)))
         }
-        None => (TABLE.density_of_gases(altitude), speed_of_sound(thermosphere(stretch, altitude))),
+        None => (TABLE.density_of_gases(altitude), speed_of_sound(thermosphere(segment, altitude))),
     }
 }
 
-/// The air at a geometric altitude, m, by the formulas of a stretch.
+/// The air at a geometric altitude, m, by the formulas of a segment.
 ///
 /// ```text
 /// p = ρ R* T_M/M₀,  T_M = T M₀/M                   (42, 22)
 /// C_s = √(γ R* T_M/M₀)                             (50), above 86 km with T in place of T_M
 /// ```
 #[inline(always)]
-pub fn sample_in<S: Scalar>(stretch: usize, altitude: S) -> AtmosphereSample<S> {
-    let (density, speed_of_sound) = density_and_sound_in(stretch, altitude);
-    let altitude = within_bounds(stretch, altitude);
-    let (molecular_scale_temperature, temperature) = match TABLE.layers.get(stretch) {
+pub fn sample_in<S: Scalar>(segment: usize, altitude: S) -> AtmosphereSample<S> {
+    let (density, speed_of_sound) = density_and_sound_in(segment, altitude);
+    let altitude = within_bounds(segment, altitude);
+    let (molecular_scale_temperature, temperature) = match TABLE.layers.get(segment) {
         Some(layer) => {
             let molecular_scale_temperature = layer.molecular_scale_temperature(&layer.place(altitude));
             (molecular_scale_temperature, molecular_scale_temperature * weight_ratio(altitude))
         }
-        None => (TABLE.molecular_scale_temperature_of_gases(altitude), thermosphere(stretch, altitude)),
+        None => (TABLE.molecular_scale_temperature_of_gases(altitude), thermosphere(segment, altitude)),
     };
     AtmosphereSample {
         density,
@@ -165,10 +165,10 @@ fn speed_of_sound<S: Scalar>(temperature: S) -> S {
     (temperature * SOUND_OF_KELVIN).sqrt()
 }
 
-/// The altitude, m, or the nearest at which the formulas of a stretch are still used.
+/// The altitude, m, or the nearest at which the formulas of a segment are still used.
 #[inline(always)]
-fn within_bounds<S: Scalar>(stretch: usize, altitude: S) -> S {
-    let lowest = if stretch <= 1 { -0.5 * EARTH_RADIUS } else { LOWEST_OF_TRIALS };
+fn within_bounds<S: Scalar>(segment: usize, altitude: S) -> S {
+    let lowest = if segment <= 1 { -0.5 * EARTH_RADIUS } else { LOWEST_OF_TRIALS };
     let altitude = S::select(altitude.less_than(lowest), S::from(lowest), altitude);
     S::select(altitude.less_than(HIGHEST), altitude, S::from(HIGHEST))
 }
@@ -201,7 +201,7 @@ fn weight_ratio<S: Scalar>(altitude: S) -> S {
     S::select(altitude.less_than(FIRST), S::one(), (altitude - base) * slope + ratio)
 }
 
-/// The kinetic temperature above 86 km, K, by the formula of a stretch.
+/// The kinetic temperature above 86 km, K, by the formula of a segment.
 ///
 /// ```text
 /// T = T_c + A √(1 - ((Z - Z₈)/a)²)                                  to 110 km, constant below Z₈ = 91 km   (25, 27)
@@ -213,12 +213,12 @@ fn weight_ratio<S: Scalar>(altitude: S) -> S {
 /// digits: the printed 263.1905 K, -76.3232 K and 19.9429 km would step the density at 110 km by 1e-6.
 /// Above 110 km, where the ellipse ends soon, its tangent continues it; below 86 km nothing gets colder than 100 K.
 #[inline(always)]
-fn thermosphere<S: Scalar>(stretch: usize, altitude: S) -> S {
+fn thermosphere<S: Scalar>(segment: usize, altitude: S) -> S {
     const CENTRE: f64 = 263.190_480_022_031_5;
     const WIDTH: f64 = 19_942.874_919_000_1;
     const LAPSE: f64 = 0.012;
     const COLDEST: f64 = 100.0;
-    let temperature = match stretch {
+    let temperature = match segment {
         ..=12 => {
             let on_ellipse = S::select(altitude.less_than(110e3), altitude, S::from(110e3));
             let into_ellipse = S::select(on_ellipse.less_than(91e3), S::zero(), on_ellipse - 91e3) * (1.0 / WIDTH);

@@ -58,22 +58,22 @@ impl<const K: usize> Cubics<K> {
         self.ends.map(|ends| ends.map(|end| end.slope))
     }
 
-    /// The functions by the formula of a stretch; outside they stay as they are at the ends.
+    /// The functions by the formula of a segment; outside they stay as they are at the ends.
     #[inline(always)]
-    pub fn at<S: Scalar>(&self, stretch: usize, x: S, hint: &Hint) -> [S; K] {
-        match stretch {
+    pub fn at<S: Scalar>(&self, segment: usize, x: S, hint: &Hint) -> [S; K] {
+        match segment {
             0 => self.ends[0].map(|end| S::from(end.value)),
             1 => self.inside(x, hint),
             _ => self.ends[1].map(|end| S::from(end.value)),
         }
     }
 
-    /// The functions by the formula of a stretch; outside they go on in straight lines.
+    /// The functions by the formula of a segment; outside they go on in straight lines.
     #[inline(always)]
-    pub fn extrapolated<S: Scalar>(&self, stretch: usize, x: S, hint: &Hint) -> [S; K] {
+    pub fn extrapolated<S: Scalar>(&self, segment: usize, x: S, hint: &Hint) -> [S; K] {
         let [first, last] = self.axis.range;
         let line = |ends: &[End; K], origin: f64| ends.map(|End { value, slope }| (x - origin) * slope + value);
-        match stretch {
+        match segment {
             0 => line(&self.ends[0], first),
             1 => self.inside(x, hint),
             _ => line(&self.ends[1], last),

@@ -88,16 +88,16 @@ impl Surfaces {
         [&self.first.range, &self.second.range]
     }
 
-    /// The functions by the formulas of a stretch of each argument; outside they stay as they are at the ends.
+    /// The functions by the formulas of a segment of each argument; outside they stay as they are at the ends.
     #[inline(always)]
-    pub fn at<S: Scalar>(&self, stretches: [usize; 2], arguments: [S; 2], hints: &[Hint; 2]) -> [S; 2] {
-        let inside = |axis: &Axis, stretch: usize, x: S| match stretch {
+    pub fn at<S: Scalar>(&self, segments: [usize; 2], arguments: [S; 2], hints: &[Hint; 2]) -> [S; 2] {
+        let inside = |axis: &Axis, segment: usize, x: S| match segment {
             0 => S::from(axis.range[0]),
             1 => axis.within_reach(x),
             _ => S::from(axis.range[1]),
         };
-        let x = inside(&self.first, stretches[0], arguments[0]);
-        let y = inside(&self.second, stretches[1], arguments[1]);
+        let x = inside(&self.first, segments[0], arguments[0]);
+        let y = inside(&self.second, segments[1], arguments[1]);
         S::look_up([x, y], &Inside { surfaces: self, hints })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without_heat_load};
 use crate::coordinates::PlanetFixed;
-use crate::integrate::{Pace, System};
+use crate::integrate::{StepBounds, System};
 use crate::scalar::{Over, Scalar};
 
 /// The state (x, y, z, vx, vy, vz), in m and m/s.
@@ -28,7 +28,7 @@ impl<P: Scalar, S: Over<P>> System<S, 7> for Cartesian<P> {
     }
 }
 
-impl<const N: usize> Pace<N> for Cartesian
+impl<const N: usize> StepBounds<N> for Cartesian
 where
     Self: System<f64, N>,
 {

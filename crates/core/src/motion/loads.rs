@@ -62,9 +62,9 @@ impl<P: Scalar> Forces<P> {
         let mut flow = self.flow::<false, _>(state);
         if flow.density_and_mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
             let (density, sound) = self.models.atmosphere.density_and_sound(
-                self.regime.of(Switch::Atmosphere),
+                self.mode.of(Switch::Atmosphere),
                 flow.altitude,
-                &self.cells.atmosphere,
+                &self.cache.atmosphere,
             );
             flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
         }
@@ -146,8 +146,7 @@ impl Forces {
     /// The air in a state, as far as the atmosphere knows it.
     pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
         let altitude = self.models.planet.shape.altitude(&state.position);
-        let sample =
-            self.models.atmosphere.sample(self.regime.of(Switch::Atmosphere), altitude, &self.cells.atmosphere);
+        let sample = self.models.atmosphere.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere);
         // By the law of gases, denser air of the same temperature presses harder.
         let factor = self.parameters.density;
         AtmosphereSample {

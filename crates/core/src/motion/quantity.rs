@@ -11,7 +11,7 @@ use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 
 /// A time and the state then. In dual numbers both move along the flow: what is computed from them comes with its rate of change.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<S: nalgebra::Scalar = Dual64> {
+pub(crate) struct StateRate<S: nalgebra::Scalar = Dual64> {
     /// s.
     pub(crate) time: S,
     /// Place and motion.
@@ -20,14 +20,14 @@ pub(crate) struct Moment<S: nalgebra::Scalar = Dual64> {
     pub(crate) heat_load: S,
 }
 
-impl<S: Scalar> Moment<S> {
+impl<S: Scalar> StateRate<S> {
     /// Of a formulation's numbers.
     pub(crate) fn at<F: Formulation<N>, const N: usize>(time: S, state: &[S; N]) -> Self {
         Self { time, state: F::planet_fixed(state), heat_load: state.get(6).copied().unwrap_or_else(S::zero) }
     }
 }
 
-impl Moment {
+impl StateRate {
     /// Of a formulation's numbers and their rates.
     pub(crate) fn of<F: Formulation<N>, const N: usize>(time: f64, state: &[f64; N], derivative: &[f64; N]) -> Self {
         Self::at::<F, N>(Dual64::new(time, 1.0), &moving(state, derivative))
@@ -43,10 +43,10 @@ impl<P: Scalar> Forces<P> {
     pub(crate) fn quantity<S: Over<P> + Scalar<Mask = bool>>(
         &self,
         quantity: Quantity,
-        at: &Moment<S>,
+        at: &StateRate<S>,
         track: &GreatCircle<S>,
     ) -> S {
-        let Moment { time, state, heat_load } = at;
+        let StateRate { time, state, heat_load } = at;
         let PlanetFixed { position, velocity } = state;
         let planet = &self.models.planet;
         match quantity {

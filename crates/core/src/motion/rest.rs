@@ -33,7 +33,7 @@ impl Forces {
         let brakes = |burn: &&Burn<f64>| burn.along == Axis::Velocity && burn.acceleration < 0.0;
         self.burn.as_ref().filter(brakes).is_some_and(|burn| {
             let still = PlanetFixed { velocity: Vector3::zeros(), ..*state };
-            self.acceleration(time, &still).norm() <= -burn.acceleration * burn.lightness(time)
+            self.acceleration(time, &still).norm() <= -burn.acceleration * burn.mass_ratio(time)
         })
     }
 

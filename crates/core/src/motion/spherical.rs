@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
 use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without_heat_load};
 use crate::coordinates::{FlightPath, PlanetFixed};
-use crate::integrate::{Pace, System};
+use crate::integrate::{StepBounds, System};
 use crate::planet::Pull;
 use crate::propulsion::Axis;
 use crate::scalar::{Over, Scalar};
@@ -163,7 +163,7 @@ impl<P: Scalar> Spherical<P> {
     #[inline(always)]
     fn thrust<S: Over<P>>(&self, time: S, place: &Place<S>, velocity: &Velocity<S>) -> Option<[S; 3]> {
         let burn = self.0.burn.as_ref()?;
-        let acceleration = burn.lightness(time) * burn.acceleration;
+        let acceleration = burn.mass_ratio(time) * burn.acceleration;
         let Velocity { sin_gamma, cos_gamma, .. } = *velocity;
         let faded_over_cos_gamma = || acceleration * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
         Some(match burn.along {
@@ -186,7 +186,7 @@ impl<P: Scalar> Spherical<P> {
     }
 }
 
-impl<const N: usize> Pace<N> for Spherical
+impl<const N: usize> StepBounds<N> for Spherical
 where
     Self: System<f64, N>,
 {

@@ -9,8 +9,8 @@ use crate::atmosphere::Atmosphere;
 use crate::control::Command;
 use crate::event::{Condition, Effect, Engine, Quantity, Trigger};
 use crate::heating::{Convective, Heating};
+use crate::number_text::{NumberText, apart};
 use crate::parachute::Parachute;
-use crate::plain::{Plain, apart};
 use crate::planet::{Gravity, Zonal};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
@@ -123,7 +123,7 @@ impl Bound {
 
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.between_texts(&Plain(self.minimum).to_string(), &Plain(self.maximum).to_string()))
+        f.write_str(&self.between_texts(&NumberText(self.minimum).to_string(), &NumberText(self.maximum).to_string()))
     }
 }
 

@@ -5,31 +5,33 @@ use std::array::from_fn;
 use nalgebra::Vector3;
 
 use super::SimulationError;
-use super::alarms::{Alarms, moments_up_to};
-use super::descent::{Descent, land};
-use super::passage::Passage;
-use super::watch::{Exit, Watch, next_corner};
+use super::conditions::{ConditionDetector, moments_up_to};
+use super::detector::{Detector, cut_at_first};
+use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boundary_in_time};
+use super::step_view::StepView;
+use super::stop_altitude::StopAltitudeDetector;
 use crate::coordinates::PlanetFixed;
 use crate::event::{Effect, Engine};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, Chatter, Formulation, Moment, Singularity, heat_load};
+use crate::motion::{self, Chatter, Formulation, Singularity, StateRate, heat_load};
 use crate::propulsion::{Axis, Impulse};
 use crate::scenario::{Phase, Scenario};
-use crate::trajectory::{Arrival, Happening, Instant, Termination, Warning};
+use crate::trajectory::{Arrival, EventRecord, Instant, Termination, Warning};
 
 /// A flight between its start and its end.
 pub(super) struct Flight<'a, F, const N: usize> {
     pub(super) scenario: &'a Scenario,
     pub(super) motion: F,
     pub(super) integrator: Integrator<'a, N>,
-    descent: Descent,
-    watch: Watch,
-    alarms: Alarms,
+    stop_altitude: StopAltitudeDetector,
+    model_boundaries: ModelBoundaryDetector,
+    conditions: ConditionDetector,
     phase: Phase,
     time: f64,
     state: [f64; N],
-    looks: usize,
+    /// Of the motion, to look inside steps and ahead of them.
+    evaluations: usize,
     pub(super) log: Log,
 }
 
@@ -38,18 +40,8 @@ pub(super) struct Flight<'a, F, const N: usize> {
 pub(super) struct Log {
     /// The phases after the first.
     pub(super) phases: Vec<Phase>,
-    pub(super) happenings: Vec<Happening>,
+    pub(super) event_records: Vec<EventRecord>,
     pub(super) warnings: Vec<Warning>,
-}
-
-/// Why a step is cut short.
-enum Cut {
-    /// It meets the stop altitude.
-    Ground,
-    /// It leaves the stretch of a formula.
-    Exit(Exit),
-    /// It meets the condition of this number.
-    Alarm(usize),
 }
 
 impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
@@ -63,21 +55,33 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
         let state = F::coordinates(&case.initial_state, 0.0);
         regular(&motion, 0.0, &state)?;
-        settle(&mut motion, 0.0, &state)?;
+        enter_mode_of(&mut motion, 0.0, &state)?;
         let integrator = Integrator::new(&motion, state, limits);
-        let start = Moment::of::<F, N>(0.0, &state, integrator.derivative());
-        let descent = Descent::new(case.planet.shape, case.stop.altitude, &start);
-        let watch = Watch::new(motion.forces(), &start);
-        let alarms = Alarms::new(case, motion.forces(), &start);
+        let start = StateRate::of::<F, N>(0.0, &state, integrator.derivative());
+        let stop_altitude = StopAltitudeDetector::new(case.planet.shape, case.stop.altitude, &start);
+        let model_boundaries = ModelBoundaryDetector::new(motion.forces(), &start);
+        let conditions = ConditionDetector::new(case, motion.forces(), &start);
         let phase = Phase::first(case);
         let log = Log::default();
-        Ok(Self { scenario, motion, integrator, descent, watch, alarms, phase, time: 0.0, state, looks: 0, log })
+        Ok(Self {
+            scenario,
+            motion,
+            integrator,
+            stop_altitude,
+            model_boundaries,
+            conditions,
+            phase,
+            time: 0.0,
+            state,
+            evaluations: 0,
+            log,
+        })
     }
 
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
         let is_on_ground = self.scenario.starts_on_stop_altitude();
-        if !self.alarms.is_empty() {
+        if !self.conditions.is_empty() {
             return self.turn(None, None, is_on_ground);
         }
         Ok((is_on_ground && !self.lifts_off()).then(|| self.arrival(self.ground())))
@@ -85,12 +89,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Whether a flight that starts on the stop altitude, and on which all has happened that happens at t = 0, leaves it upward.
     fn lifts_off(&mut self) -> bool {
-        let altitude = |length| self.descent.height(&later(&self.motion, self.time, &self.state, length)).re;
+        let altitude = |length| self.stop_altitude.height_at(&later(&self.motion, self.time, &self.state, length)).re;
         let start = altitude(0.0);
         let mut changes = moments_up_to(self.foresight()).map(|(length, _)| altitude(length) - start);
         let lifts_off = changes.find(|change| change.abs() > MOVES).is_some_and(|change| change > 0.0);
         if lifts_off {
-            self.descent.start_upward();
+            self.stop_altitude.start_upward();
         }
         lifts_off
     }
@@ -100,15 +104,15 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if self.scenario.case().stop.altitude == 0.0 { Termination::SurfaceImpact } else { Termination::StopAltitude }
     }
 
-    /// When the next step must end at the latest, s: with the time of the flight, with a stretch of a schedule, where a condition on
+    /// When the next step must end at the latest, s: with the time of the flight, with a segment of a schedule, where a condition on
     /// the time is met, where the propellant is spent, or where a canopy begins to fill or is full.
     pub(super) fn horizon(&self) -> f64 {
         let mut end = self.scenario.case().stop.time;
         if self.motion.forces().has_switches() {
-            end = end.min(next_corner(self.motion.forces()));
+            end = end.min(next_boundary_in_time(self.motion.forces()));
         }
-        if !self.alarms.is_empty() {
-            end = end.min(self.alarms.next_time());
+        if !self.conditions.is_empty() {
+            end = end.min(self.conditions.next_time());
         }
         let of_phase = [self.phase.burnout(), self.phase.last_instant(), self.phase.next_inflation()];
         of_phase.into_iter().flatten().fold(end, f64::min)
@@ -120,95 +124,79 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         self.integrator.advance(&self.motion, horizon).map_err(|error| self.failure(error))
     }
 
-    /// Looks at a step, which it cuts at the stop altitude, where the formulas of the models change, and where a condition is met;
-    /// returns the end of the flight, if that was it.
+    /// Cuts a step at the first place that a detector locates in it, shows what is left, and does what happens at its end; returns the end
+    /// of the flight, if that was it.
     pub(super) fn pass(
         &mut self,
         step: &Step<N>,
-        observe: &mut impl FnMut(&Passage<F, N>) -> Result<(), SimulationError>,
+        observe: &mut impl FnMut(&StepView<F, N>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
         let horizon = self.horizon();
-        let Self { motion, integrator, descent, watch, alarms, log, .. } = self;
-        let phase = log.phases.len();
-        let (landed, alarmed);
-        let mut passage = Passage::new(motion, step, phase);
-        let mut cut = None;
-        if let Some((part, first)) = first_cut(&passage, descent, watch) {
-            self.looks += passage.evaluations();
-            landed = land(integrator, motion, step, step.time(part), |moment| match &first {
-                Cut::Exit(exit) => exit.inside(motion.forces(), moment),
-                Cut::Ground | Cut::Alarm(_) => descent.height(moment),
-            });
-            passage = Passage::new(motion, &landed, phase);
-            cut = Some(first);
-        }
-        // What is met where the step ends does not cut it again.
-        if let Some((part, index)) = alarms.first(&passage).filter(|(part, _)| *part < AT_END) {
-            self.looks += passage.evaluations();
-            let step = passage.step;
-            alarmed =
-                land(integrator, motion, step, step.time(part), |moment| alarms.before(index, motion.forces(), moment));
-            passage = Passage::new(motion, &alarmed, phase);
-            cut = Some(Cut::Alarm(index));
-        }
-        descent.follow(&passage);
-        watch.follow(&passage);
-        alarms.follow(&passage);
-        (self.time, self.state) = (passage.step.end_time, passage.step.end);
+        let Self { motion, integrator, stop_altitude, model_boundaries, conditions, evaluations, log, .. } = self;
+        let mut view = StepView::new(motion, step, log.phases.len());
+        // Each looks at what those before have left, so that the last to cut is the first place.
+        let at_stop_altitude = cut_at_first(&mut view, stop_altitude, integrator, evaluations);
+        let at_boundary = cut_at_first(&mut view, model_boundaries, integrator, evaluations);
+        let at_condition = cut_at_first(&mut view, conditions, integrator, evaluations);
+        stop_altitude.follow(&view);
+        model_boundaries.follow(&view);
+        conditions.follow(&view);
+        (self.time, self.state) = (view.step.end_time, view.step.end);
         let halted = halts(motion, self.time, &self.state);
         if !halted {
             regular(motion, self.time, &self.state)?;
         }
-        observe(&passage)?;
-        self.looks += passage.evaluations();
+        observe(&view)?;
+        *evaluations += view.evaluations();
+        let is_cut = view.is_cut();
         if halted {
             self.halt();
         }
 
         let mut ending = (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
-        let mut exit = None;
-        let turns = cut.is_some() || halted || self.alarms.is_due() || self.time >= horizon;
-        match cut {
-            Some(Cut::Ground) => ending = Some(self.ground()),
-            Some(Cut::Exit(left)) => exit = Some(left),
-            Some(Cut::Alarm(index)) => self.alarms.meet(index),
-            None => {}
+        let mut crossing = None;
+        match (at_condition, at_boundary, at_stop_altitude) {
+            (Some(condition), ..) => self.conditions.meet(condition),
+            (None, Some(boundary), _) => crossing = Some(boundary),
+            (None, None, Some(())) => ending = Some(self.ground()),
+            (None, None, None) => {}
         }
-        if turns { self.turn(exit, ending, false) } else { Ok(None) }
+        let is_end_of_phase = is_cut || halted || self.conditions.is_due() || self.time >= horizon;
+        if is_end_of_phase { self.turn(crossing, ending, false) } else { Ok(None) }
     }
 
-    /// Does what happens at the end of a step, and goes on from there in the regime and the phase that begin; returns the end of the
+    /// Does what happens at the end of a step, and goes on from there in the mode and the phase that begin; returns the end of the
     /// flight, if that was it. `is_on_ground` says that it starts on the stop altitude, which it may leave upward.
     fn turn(
         &mut self,
-        exit: Option<Exit>,
+        crossing: Option<BoundaryCrossing>,
         mut ending: Option<Termination>,
         is_on_ground: bool,
     ) -> Result<Option<Arrival>, SimulationError> {
-        let settled = settle(&mut self.motion, self.time, &self.state);
+        let entered = enter_mode_of(&mut self.motion, self.time, &self.state);
         // The last instant belongs to what would follow; where nothing could, it belongs to what was.
         if ending.is_none() {
-            settled?;
+            entered?;
         }
         self.change_by_time()?;
-        let happened = self.log.happenings.len();
-        let stays_on_ground = !self.alarms.is_empty() && !self.let_events_happen(is_on_ground)?;
+        let happened = self.log.event_records.len();
+        let stays_on_ground = !self.conditions.is_empty() && !self.let_events_happen(is_on_ground)?;
         if stays_on_ground {
             ending = Some(self.ground());
         }
-        let eventless = self.log.happenings.len() == happened;
-        if let Some(ending) = ending.or_else(|| self.alarms.end()) {
+        let eventless = self.log.event_records.len() == happened;
+        if let Some(ending) = ending.or_else(|| self.conditions.end()) {
             return Ok(Some(self.arrival(ending)));
         }
         if halts(&self.motion, self.time, &self.state) {
             return Err(self.no_direction(self.time));
         }
         self.integrator.restart(&self.motion, self.time, self.state);
-        let start = Moment::of::<F, N>(self.time, &self.state, self.integrator.derivative());
-        let watch = Watch::new(self.motion.forces(), &start);
-        let before = std::mem::replace(&mut self.watch, watch);
-        match exit.filter(|exit| eventless && exit.is_undone(&before, &watch, self.motion.forces())) {
-            Some(Exit { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
+        let start = StateRate::of::<F, N>(self.time, &self.state, self.integrator.derivative());
+        let boundaries = ModelBoundaryDetector::new(self.motion.forces(), &start);
+        let before = std::mem::replace(&mut self.model_boundaries, boundaries);
+        match crossing.filter(|crossing| eventless && crossing.is_undone(&before, &boundaries, self.motion.forces())) {
+            Some(BoundaryCrossing { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
             None => Ok(None),
         }
     }
@@ -217,7 +205,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     fn let_events_happen(&mut self, is_on_ground: bool) -> Result<bool, SimulationError> {
         self.look();
         loop {
-            while let Some(event) = self.alarms.next_event(self.time) {
+            while let Some(event) = self.conditions.next_event(self.time) {
                 self.happen(event)?;
                 self.change_by_time()?;
                 self.look();
@@ -242,7 +230,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     fn no_direction(&self, time: f64) -> SimulationError {
         let switches_on =
             |event: &usize| matches!(self.scenario.case().events[*event].then.engine, Some(Engine::On(_)));
-        let event = self.log.happenings.iter().rev().map(|happening| happening.event).find(switches_on).unwrap_or(0);
+        let event = self.log.event_records.iter().rev().map(|record| record.event).find(switches_on).unwrap_or(0);
         let altitude = self.scenario.case().planet.shape.altitude(&F::planet_fixed(&self.state).position);
         SimulationError::NoDirection { event, time, altitude }
     }
@@ -262,16 +250,16 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// Finds the conditions that are met at the present instant.
     fn look(&mut self) {
         let derivative = self.motion.derivative(self.time, &self.state);
-        self.looks += 1;
-        let now = Moment::of::<F, N>(self.time, &self.state, &derivative);
-        self.alarms.look(self.motion.forces(), &now);
+        self.evaluations += 1;
+        let now = StateRate::of::<F, N>(self.time, &self.state, &derivative);
+        self.conditions.look(self.motion.forces(), &now);
     }
 
     /// Finds the conditions that are met at the present instant by a quantity that is on the value and moves on.
     fn look_closely(&mut self) -> bool {
         let foresight = self.foresight();
-        let Self { alarms, motion, time, state, .. } = self;
-        alarms.look_closely(motion.forces(), |length| later(motion, *time, state, length), foresight)
+        let Self { conditions, motion, time, state, .. } = self;
+        conditions.look_closely(motion.forces(), |length| later(motion, *time, state, length), foresight)
     }
 
     /// How far ahead the motion is followed where the rates of an instant do not tell where a quantity goes, s.
@@ -287,13 +275,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let effect = &self.scenario.case().events[event].then;
         let before = self.instant();
         if let Some(impulse) = effect.impulse {
-            self.push(event, impulse);
+            self.apply_impulse(event, impulse);
         }
         self.warn_of(event, effect);
         if !effect.is_none() {
             self.enter(self.phase.after(event, effect, self.time))?;
         }
-        self.log.happenings.push(Happening { event, before, after: self.instant() });
+        self.log.event_records.push(EventRecord { event, before, after: self.instant() });
         Ok(())
     }
 
@@ -317,7 +305,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 
     /// Changes the velocity at once.
-    fn push(&mut self, event: usize, impulse: Impulse) {
+    fn apply_impulse(&mut self, event: usize, impulse: Impulse) {
         let PlanetFixed { position, velocity } = F::planet_fixed(&self.state);
         match self.direction(impulse.along) {
             Some(direction) => {
@@ -325,19 +313,19 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
                 let heat_load = heat_load(&self.state).unwrap_or(0.0);
                 self.state = F::coordinates(&PlanetFixed { position, velocity }, heat_load);
                 let derivative = self.motion.derivative(self.time, &self.state);
-                self.descent.go_to(&Moment::of::<F, N>(self.time, &self.state, &derivative));
+                self.stop_altitude.go_to(&StateRate::of::<F, N>(self.time, &self.state, &derivative));
             }
             None => self.log.warnings.push(Warning::NoDirection { event, time: self.time }),
         }
     }
 
-    /// Enters a phase, in the regime of the present state.
+    /// Enters a phase, in the mode of the present state.
     fn enter(&mut self, phase: Phase) -> Result<(), SimulationError> {
         *self.motion.forces_mut() = phase.forces(self.scenario.case());
         self.phase = phase.clone();
         self.log.phases.push(phase);
         regular(&self.motion, self.time, &self.state)?;
-        settle(&mut self.motion, self.time, &self.state)
+        enter_mode_of(&mut self.motion, self.time, &self.state)
     }
 
     /// The present instant.
@@ -347,7 +335,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             state: F::planet_fixed(&self.state),
             heat_load: heat_load(&self.state),
             phase: self.log.phases.len(),
-            regime: self.motion.forces().regime(),
+            mode: self.motion.forces().mode(),
         }
     }
 
@@ -373,14 +361,14 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     fn arrival(&self, termination: Termination) -> Arrival {
         let mut statistics = self.integrator.statistics();
-        statistics.evaluations += self.looks;
+        statistics.evaluations += self.evaluations;
         let heat_load = heat_load(&self.state);
         Arrival { termination, time: self.time, state: F::planet_fixed(&self.state), heat_load, statistics }
     }
 }
 
 /// The moment some time after another, s, by one step of the classical method of Runge and Kutta: good for short times.
-fn later<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64; N], length: f64) -> Moment {
+fn later<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64; N], length: f64) -> StateRate {
     let ahead = |rates: &[f64; N], part: f64| -> [f64; N] { from_fn(|i| state[i] + rates[i] * (part * length)) };
     let rates = |part: f64, state: &[f64; N]| motion.derivative(time + part * length, state);
     let first = rates(0.0, state);
@@ -389,30 +377,17 @@ fn later<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64;
     let fourth = rates(1.0, &ahead(&third, 1.0));
     let mean = from_fn(|i| (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0);
     let (time, state) = (time + length, ahead(&mean, 1.0));
-    Moment::of::<F, N>(time, &state, &motion.derivative(time, &state))
+    StateRate::of::<F, N>(time, &state, &motion.derivative(time, &state))
 }
 
-/// The part of a step at which it meets the stop altitude or leaves the stretch of a formula, whichever comes first.
-fn first_cut<F: Formulation<N>, const N: usize>(
-    passage: &Passage<F, N>,
-    descent: &Descent,
-    watch: &Watch,
-) -> Option<(f64, Cut)> {
-    let impact = descent.impact(passage);
-    match watch.exit(passage).filter(|exit| impact.is_none_or(|impact| exit.part < impact)) {
-        Some(exit) => Some((exit.part, Cut::Exit(exit))),
-        None => impact.map(|part| (part, Cut::Ground)),
-    }
-}
-
-/// Enters the regime of a state.
-fn settle<F: Formulation<N>, const N: usize>(
+/// Enters the mode of a state.
+fn enter_mode_of<F: Formulation<N>, const N: usize>(
     motion: &mut F,
     time: f64,
     state: &[f64; N],
 ) -> Result<(), SimulationError> {
     let state = F::planet_fixed(state);
-    motion.forces_mut().settle(time, &state).map_err(|Chatter(switch)| SimulationError::Chatter { time, switch })
+    motion.forces_mut().enter_mode_of(time, &state).map_err(|Chatter(switch)| SimulationError::Chatter { time, switch })
 }
 
 /// Whether a braking thrust has brought the vehicle to rest, as near as the steps or the equations come to it.
@@ -445,7 +420,5 @@ const FORESIGHT: f64 = 3e-3;
 const MOVES: f64 = 1e-6;
 /// An integration under a thrust by the velocity that fails at less than this part of the circular speed fails because of it.
 const NEARLY_AT_REST: f64 = 1e-4;
-/// From this part of a step on, a place counts as its end.
-const AT_END: f64 = 1.0 - 1e-9;
 /// An integration that fails where no more than this part of the mass is left fails because of it.
 const NEARLY_NOTHING: f64 = 1e-2;

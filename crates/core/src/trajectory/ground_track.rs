@@ -1,7 +1,7 @@
 //! The ground track of a flight: how far it leads over the sphere of the equatorial radius, and how far along the great circle on
 //! which the flight sets out.
 
-use super::leg::{Leg, Motion};
+use super::stored_step::{Motion, StoredStep};
 use crate::coordinates::{GreatCircle, PlanetFixed, ground_rate, wrap_to_half_turns};
 
 /// The ground track, piece by piece. Its lengths are angles at the planet's centre, rad.
@@ -58,13 +58,13 @@ impl GroundTrack {
     pub(super) fn extend(
         &mut self,
         motion: &Motion,
-        leg: &Leg,
+        step: &StoredStep,
         first: &PlanetFixed<f64>,
         circle: &GreatCircle,
     ) -> PlanetFixed<f64> {
-        let interpolant = motion.interpolant(&leg.step);
+        let interpolant = motion.interpolant(&step.step);
         let state = |time| interpolant.at(motion, time).0;
-        let (times, last) = ([leg.start_time(), leg.end_time()], motion.end(&leg.step));
+        let (times, last) = ([step.start_time(), step.end_time()], motion.end(&step.step));
         if times[0] < times[1] {
             self.add(&state, times, [first, &last], circle, MOST_HALVINGS);
         }

@@ -1,6 +1,6 @@
 //! The phases of a flight: between the instants at which events change the vehicle.
 
-use super::{Happening, HeatingPeaks, Peak, Peaks, Trajectory};
+use super::{EventRecord, HeatingPeaks, Peak, Peaks, Trajectory};
 use crate::event::Engine;
 
 /// A part of a flight in which the vehicle and its thrust stay the same.
@@ -57,19 +57,19 @@ impl Trajectory {
     /// With what the phase of a number begins, if the vehicle changes there.
     fn start_of(&self, phase: usize) -> Option<PhaseStart> {
         let before = phase.checked_sub(1)?;
-        let happenings = &self.flown.happenings;
+        let event_records = &self.flown.event_records;
         let effect = |event: usize| &self.case.events[event].then;
-        let begins_it = |happening: &&Happening| happening.after.phase == phase && happening.before.phase == before;
-        if let Some(happening) = happenings.iter().find(begins_it) {
-            return effect(happening.event).changes_vehicle().then_some(PhaseStart::Event(happening.event));
+        let begins_it = |record: &&EventRecord| record.after.phase == phase && record.before.phase == before;
+        if let Some(record) = event_records.iter().find(begins_it) {
+            return effect(record.event).changes_vehicle().then_some(PhaseStart::Event(record.event));
         }
         let [was_on, is_on] = [before, phase].map(|phase| self.flown.phases[phase].thrust.is_some());
-        let ignites = |happening: &&Happening| {
-            let engine = effect(happening.event).engine;
-            happening.after.phase <= before && matches!(engine, Some(Engine::On(thrust)) if thrust.force != 0.0)
+        let ignites = |record: &&EventRecord| {
+            let engine = effect(record.event).engine;
+            record.after.phase <= before && matches!(engine, Some(Engine::On(thrust)) if thrust.force != 0.0)
         };
-        let ignition = happenings.iter().rfind(ignites).filter(|_| was_on && !is_on);
-        ignition.map(|happening| PhaseStart::Burnout(happening.event))
+        let ignition = event_records.iter().rfind(ignites).filter(|_| was_on && !is_on);
+        ignition.map(|record| PhaseStart::Burnout(record.event))
     }
 }
 

@@ -31,7 +31,7 @@ impl Trajectory {
     pub fn instants(&self, sampling: &Sampling, limit: usize) -> Result<Vec<f64>, TooManyInstants> {
         let end = self.end_time();
         let wanted = match sampling {
-            Sampling::PerStep(samples) => samples.saturating_mul(self.flown.legs.len()),
+            Sampling::PerStep(samples) => samples.saturating_mul(self.flown.steps.len()),
             Sampling::Count(count) => *count,
             Sampling::Interval(_) | Sampling::Times(_) => 0,
         };
@@ -41,9 +41,9 @@ impl Trajectory {
         let mut instants = Instants { times: vec![0.0], end, limit };
         match sampling {
             Sampling::PerStep(samples) => {
-                for leg in &self.flown.legs {
+                for step in &self.flown.steps {
                     for sample in 1..=*samples {
-                        instants.push(leg.time(ratio(sample, *samples)))?;
+                        instants.push(step.time(ratio(sample, *samples)))?;
                     }
                 }
             }

@@ -46,17 +46,17 @@ impl AlphaMachTable {
         self.has_lift
     }
 
-    /// The coefficients at an angle of attack, rad, and a Mach number, by the formulas of a stretch of each: 0 below the table, 1 inside,
+    /// The coefficients at an angle of attack, rad, and a Mach number, by the formulas of a segment of each: 0 below the table, 1 inside,
     /// 2 above.
     #[inline(always)]
     pub fn coefficients<S: Scalar>(
         &self,
-        stretches: [usize; 2],
+        segments: [usize; 2],
         angle_of_attack: S,
         mach: S,
         hints: &[Hint; 2],
     ) -> Coefficients<S> {
-        let [lift, drag] = self.coefficients.at(stretches, [angle_of_attack, mach], hints);
+        let [lift, drag] = self.coefficients.at(segments, [angle_of_attack, mach], hints);
         Coefficients { lift, drag }
     }
 }

@@ -35,10 +35,10 @@ impl MachTable {
         self.has_lift
     }
 
-    /// The coefficients at a Mach number, by the formula of a stretch: 0 below the table, 1 inside, 2 above.
+    /// The coefficients at a Mach number, by the formula of a segment: 0 below the table, 1 inside, 2 above.
     #[inline(always)]
-    pub fn coefficients<S: Scalar>(&self, stretch: usize, mach: S, hint: &Hint) -> Coefficients<S> {
-        let [lift, drag] = self.coefficients.at(stretch, mach, hint);
+    pub fn coefficients<S: Scalar>(&self, segment: usize, mach: S, hint: &Hint) -> Coefficients<S> {
+        let [lift, drag] = self.coefficients.at(segment, mach, hint);
         Coefficients { lift, drag }
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use reentry::interpolation::TableError;
-use reentry::plain::apart;
+use reentry::number_text::apart;
 use reentry::scenario::Bound;
 use serde::Serialize;
 use serde_json::{Map, Number, Value, json};

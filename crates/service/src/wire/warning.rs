@@ -2,8 +2,8 @@
 
 use reentry::coordinates::UndefinedElements;
 use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
-use reentry::plain::{Plain, apart, rounded};
-use reentry::trajectory::{self, Lookup, Trajectory};
+use reentry::number_text::{NumberText, apart, rounded};
+use reentry::trajectory::{self, TableId, Trajectory};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -103,7 +103,7 @@ impl Warning {
         let detail = format!(
             "Flight lasts {length}: at a relative_tolerance of {} its end may be off by more than 1 m. \
              Set \"verify\": true to get the error",
-            Plain(relative_tolerance)
+            NumberText(relative_tolerance)
         );
         Self::new("long_flight", &detail)
     }
@@ -137,7 +137,7 @@ impl Warning {
                 ("wind_faded_near_pole", detail)
             }
             trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
-                let code = if table == Lookup::Us76 { "outside_model" } else { "outside_table" };
+                let code = if table == TableId::Us76 { "outside_model" } else { "outside_table" };
                 (code, outside(table, edge, above, unit, &format!("from {}, at {}", seconds(time), length(altitude))))
             }
             trajectory::Warning::OutsideRange {
@@ -236,33 +236,33 @@ impl Warning {
 }
 
 /// What a table or a model does outside its range.
-fn outside(table: Lookup, edge: f64, above: bool, unit: AngleUnit, since: &str) -> String {
+fn outside(table: TableId, edge: f64, above: bool, unit: AngleUnit, since: &str) -> String {
     let [ends, beyond] = if above { ["ends", "above"] } else { ["begins", "below"] };
     match table {
-        Lookup::Atmosphere => {
+        TableId::Atmosphere => {
             let edge = length(edge);
             format!(
                 "Atmosphere table {ends} at {edge}: {beyond} it the logarithm of the density goes on in a straight line ({since})"
             )
         }
-        Lookup::Us76 => {
+        TableId::Us76 => {
             let holds =
                 if above { "the density falls on with its scale height there" } else { "its lowest layer goes on" };
             format!("Atmosphere us76 {ends} at {}: {beyond} it {holds} ({since})", length(edge))
         }
-        Lookup::Wind => {
+        TableId::Wind => {
             let edge = length(edge);
             format!("Wind table {ends} at {edge}: its {edge} wind is used {beyond} it ({since})")
         }
-        Lookup::Mach => {
-            let edge = Plain(edge);
+        TableId::Mach => {
+            let edge = NumberText(edge);
             format!("Aerodynamic table {ends} at Mach {edge}: its Mach {edge} values are used {beyond} it ({since})")
         }
-        Lookup::Radiation => {
-            let edge = Plain(edge);
+        TableId::Radiation => {
+            let edge = NumberText(edge);
             format!("Radiation table {ends} at {edge} m/s: its {edge} m/s value is used {beyond} it ({since})")
         }
-        Lookup::AngleOfAttack => {
+        TableId::AngleOfAttack => {
             let edge = Angle(edge, unit);
             format!(
                 "Aerodynamic table {ends} at an angle of attack of {edge}: its {edge} values are used {beyond} it ({since})"
@@ -274,9 +274,9 @@ fn outside(table: Lookup, edge: f64, above: bool, unit: AngleUnit, since: &str) 
 /// A length or an altitude, m, for people: to four digits, in km from 1 km on.
 fn length(metres: f64) -> String {
     if metres.abs() < 1000.0 {
-        format!("{} m", Plain(rounded(metres, 4)))
+        format!("{} m", NumberText(rounded(metres, 4)))
     } else {
-        format!("{} km", Plain(rounded(metres / 1000.0, 4)))
+        format!("{} km", NumberText(rounded(metres / 1000.0, 4)))
     }
 }
 
@@ -297,7 +297,7 @@ pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use reentry::trajectory::{Lookup, Warning as CoreWarning};
+    use reentry::trajectory::{TableId, Warning as CoreWarning};
 
     use super::{AngleUnit, Warning};
 
@@ -305,43 +305,43 @@ mod tests {
     fn a_table_that_is_left_is_told_with_what_holds_beyond() {
         for (table, edge, above, expected) in [
             (
-                Lookup::Atmosphere,
+                TableId::Atmosphere,
                 1e5,
                 true,
                 "Atmosphere table ends at 100 km: above it the logarithm of the density goes on in a straight line (from 52.9 s, at 109.1 km)",
             ),
             (
-                Lookup::Us76,
+                TableId::Us76,
                 1e6,
                 true,
                 "Atmosphere us76 ends at 1000 km: above it the density falls on with its scale height there (from 52.9 s, at 109.1 km)",
             ),
             (
-                Lookup::Us76,
+                TableId::Us76,
                 -5e3,
                 false,
                 "Atmosphere us76 begins at -5 km: below it its lowest layer goes on (from 52.9 s, at 109.1 km)",
             ),
             (
-                Lookup::Wind,
+                TableId::Wind,
                 -10.0,
                 false,
                 "Wind table begins at -10 m: its -10 m wind is used below it (from 52.9 s, at 109.1 km)",
             ),
             (
-                Lookup::Mach,
+                TableId::Mach,
                 25.0,
                 true,
                 "Aerodynamic table ends at Mach 25: its Mach 25 values are used above it (from 52.9 s, at 109.1 km)",
             ),
             (
-                Lookup::Radiation,
+                TableId::Radiation,
                 16e3,
                 true,
                 "Radiation table ends at 16000 m/s: its 16000 m/s value is used above it (from 52.9 s, at 109.1 km)",
             ),
             (
-                Lookup::AngleOfAttack,
+                TableId::AngleOfAttack,
                 std::f64::consts::FRAC_PI_2,
                 true,
                 "Aerodynamic table ends at an angle of attack of 90°: its 90° values are used above it (from 52.9 s, at 109.1 km)",
@@ -350,7 +350,7 @@ mod tests {
             let time = 52.916_530_598_660_5;
             let warning = CoreWarning::OutsideTable { table, time, altitude: 109_054.394_121_244_55, edge, above };
             let warning = Warning::of_flight(warning, AngleUnit::Deg);
-            let code = if table == Lookup::Us76 { "outside_model" } else { "outside_table" };
+            let code = if table == TableId::Us76 { "outside_model" } else { "outside_table" };
             assert_eq!((warning.code, warning.time, warning.detail.as_str()), (code, Some(time), expected));
         }
     }

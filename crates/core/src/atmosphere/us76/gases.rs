@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use num_dual::Dual64;
 
-use super::{EARTH_RADIUS, GAS_CONSTANT, GRAVITY, MOLECULAR_WEIGHT, TEMPERATURE_AT_86_KM, stretch, thermosphere};
+use super::{EARTH_RADIUS, GAS_CONSTANT, GRAVITY, MOLECULAR_WEIGHT, TEMPERATURE_AT_86_KM, segment, thermosphere};
 
 /// `N_A`, 1/kmol (Table 2).
 const AVOGADRO: f64 = 6.022_169e26;
@@ -63,7 +63,7 @@ struct Level {
 
 impl Level {
     fn at(altitude: f64) -> Self {
-        let Dual64 { re: temperature, eps: lapse, .. } = thermosphere(stretch(altitude), Dual64::new(altitude, 1.0));
+        let Dual64 { re: temperature, eps: lapse, .. } = thermosphere(segment(altitude), Dual64::new(altitude, 1.0));
         let weight = gravity(altitude) / (GAS_CONSTANT * temperature);
         Self { temperature, lapse, weight, mixed: altitude < 100e3 }
     }
@@ -118,17 +118,17 @@ pub(super) fn integrands(altitude: f64, integrals: &Integrals) -> Integrals {
 pub(super) fn point(altitude: f64, integrals: &Integrals, at_500_km: &Integrals) -> Point {
     let level = Level::at(altitude);
     let slopes = integrands(altitude, integrals);
-    let stretch = level.lapse / level.temperature;
+    let segment = level.lapse / level.temperature;
     let heavy = level.heavy_gases(integrals);
     let mut gases: [[f64; 2]; 6] = [[0.0; 2]; 6];
     for gas in 0..5 {
-        gases[gas] = [heavy[gas], -heavy[gas] * (stretch + slopes[gas])];
+        gases[gas] = [heavy[gas], -heavy[gas] * (segment + slopes[gas])];
     }
     if altitude > HYDROGEN[0] {
         // n = (n₁₁ - ∫ from 500 km of φ/D (T/T₁₁)^(1+α) e^τ) (T₁₁/T)^(1+α) e^-τ, with τ = 0 at 500 km   (39)
         let source = HYDROGEN_AT_500_KM * at_500_km[5].exp() + at_500_km[6] - integrals[6];
         let spread = (-integrals[5]).exp() / level.hydrogen_ratio();
-        let decay = (1.0 + DIFFUSION[4][0]) * stretch + slopes[5];
+        let decay = (1.0 + DIFFUSION[4][0]) * segment + slopes[5];
         gases[5] = [source * spread, -(source * decay + slopes[6]) * spread];
     }
     let sum = |factor: fn(usize) -> f64, part: usize| -> f64 { (0..6).map(|gas| factor(gas) * gases[gas][part]).sum() };
@@ -136,7 +136,7 @@ pub(super) fn point(altitude: f64, integrals: &Integrals, at_500_km: &Integrals)
     let [number, number_slope] = [0, 1].map(|part| sum(|_| 1.0, part));
     // p = Σ n k T (33c) = ρ R* T_M/M₀, with R*/N_A for k, which the standard's Table 2 gives 2e-6 larger: it would step p at 86 km.
     let molecular_scale_temperature = level.temperature * (number / mass) * MOLECULAR_WEIGHT;
-    let slope = stretch + number_slope / number - mass_slope / mass;
+    let slope = segment + number_slope / number - mass_slope / mass;
     Point {
         log_density: [(mass / AVOGADRO).ln(), mass_slope / mass],
         molecular_scale_temperature: [molecular_scale_temperature, molecular_scale_temperature * slope],

@@ -1,5 +1,6 @@
-//! A step of the flight, and the motion inside it, which is computed when somebody looks there.
+//! An accepted step of the flight, and the motion inside it, which is computed where it is asked for.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
 use num_dual::Dual64;
@@ -7,11 +8,12 @@ use num_dual::Dual64;
 use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Formulation, Loads, Moment, Switch};
+use crate::motion::{Formulation, Loads, StateRate, Switch};
 
-/// A step that was flown.
-pub(super) struct Passage<'a, F, const N: usize> {
-    pub(super) step: &'a Step<N>,
+/// An accepted step.
+pub(super) struct StepView<'a, F, const N: usize> {
+    /// Owned where it was cut.
+    pub(super) step: Cow<'a, Step<N>>,
     pub(super) motion: &'a F,
     /// The number of the phase to which it belongs.
     pub(super) phase: usize,
@@ -21,8 +23,12 @@ pub(super) struct Passage<'a, F, const N: usize> {
     readings_at_end: OnceCell<[Dual64; Switch::ALL.len()]>,
 }
 
-impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
+impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
     pub(super) fn new(motion: &'a F, step: &'a Step<N>, phase: usize) -> Self {
+        Self::of(motion, Cow::Borrowed(step), phase)
+    }
+
+    fn of(motion: &'a F, step: Cow<'a, Step<N>>, phase: usize) -> Self {
         Self {
             step,
             motion,
@@ -34,27 +40,42 @@ impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
         }
     }
 
+    /// Views the beginning of the step, as far as it counts.
+    pub(super) fn replace(&mut self, beginning: Step<N>) {
+        *self = Self::of(self.motion, Cow::Owned(beginning), self.phase);
+    }
+
+    /// Whether it is the beginning of a step.
+    pub(super) fn is_cut(&self) -> bool {
+        matches!(self.step, Cow::Owned(_))
+    }
+
+    /// s.
+    pub(super) fn length(&self) -> f64 {
+        self.step.length()
+    }
+
     /// The state at the start, moving along the flow.
-    pub(super) fn start(&self) -> Moment {
-        Moment::of::<F, N>(self.step.start_time, &self.step.start, &self.step.start_derivative)
+    pub(super) fn start(&self) -> StateRate {
+        StateRate::of::<F, N>(self.step.start_time, &self.step.start, &self.step.start_derivative)
     }
 
     /// The state at the given part of the step, moving along the flow.
-    pub(super) fn inside(&self, part: f64) -> Moment {
+    pub(super) fn inside(&self, part: f64) -> StateRate {
         let time = self.step.time(part);
         let state = self.interpolant.get_or_init(|| self.step.interpolant(self.motion)).state(part);
-        Moment::of::<F, N>(time, &state, &self.motion.derivative(time, &state))
+        StateRate::of::<F, N>(time, &state, &self.motion.derivative(time, &state))
     }
 
     /// The state at the end, moving along the flow.
-    pub(super) fn end(&self) -> Moment {
-        Moment::of::<F, N>(self.step.end_time, &self.step.end, &self.step.end_derivative)
+    pub(super) fn end(&self) -> StateRate {
+        StateRate::of::<F, N>(self.step.end_time, &self.step.end, &self.step.end_derivative)
     }
 
     /// The loads at the end.
     pub(super) fn loads_at_end(&self) -> &Loads<Dual64> {
         self.loads_at_end.get_or_init(|| {
-            let Moment { time, state, .. } = self.end();
+            let StateRate { time, state, .. } = self.end();
             self.motion.forces().loads(time, &state)
         })
     }
@@ -71,7 +92,7 @@ impl<'a, F: Formulation<N>, const N: usize> Passage<'a, F, N> {
     /// The quantities of the switches, at the end.
     pub(super) fn readings_at_end(&self) -> &[Dual64; Switch::ALL.len()] {
         self.readings_at_end.get_or_init(|| {
-            let Moment { time, state, .. } = self.end();
+            let StateRate { time, state, .. } = self.end();
             self.motion.forces().readings(time, &state)
         })
     }

@@ -1,20 +1,20 @@
-//! The extremes of the flight: its peaks, and what its user should be warned of.
+//! The peak_tracker of the flight: its peaks, and what its user should be warned of.
 
 use num_dual::Dual64;
 
 use super::SimulationError;
-use super::passage::Passage;
+use super::step_view::StepView;
 use crate::coordinates::PlanetFixed;
 use crate::heating::HeatFlux;
 use crate::integrate::{Integrator, event};
-use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, Moment, Regime, heat_load};
+use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, ModelMode, StateRate, heat_load};
 use crate::trajectory::{HeatingPeaks, Instant, Peak, Peaks, Warning};
 
 /// What was seen so far, and the loads with their rates at the end of the last step.
-pub(super) struct Extremes {
+pub(super) struct PeakTracker {
     loads: Loads<Dual64>,
-    /// The number of the phase, and the regime, of the last step.
-    stage: (usize, Regime),
+    /// The number of the phase, and the mode, of the last step.
+    stage: (usize, ModelMode),
     /// Cosine squared of the angle of the flight against the air less that of the cone in which lift fades; none where there is no lift.
     cone: Option<Dual64>,
     faded: bool,
@@ -27,52 +27,52 @@ pub(super) struct Extremes {
     pub(super) warnings: Vec<Warning>,
 }
 
-impl Extremes {
+impl PeakTracker {
     pub(super) fn new<F: Formulation<N>, const N: usize>(
         motion: &F,
         integrator: &Integrator<N>,
         may_lift: bool,
     ) -> Result<Self, SimulationError> {
         let forces = motion.forces();
-        let start = Moment::of::<F, N>(0.0, integrator.state(), integrator.derivative());
+        let start = StateRate::of::<F, N>(0.0, integrator.state(), integrator.derivative());
         let loads = finite(loads_at(forces, &start), 0.0)?;
         let peaks = peaks_at(&loads, 0.0);
         let cone = may_lift.then(|| outside_cone(forces, &start));
         let faded = cone.is_some_and(|cone| cone.re < 0.0);
         let warnings = if faded { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
-        let stage = (0, forces.regime());
+        let stage = (0, forces.mode());
         let (peaks_of_phases, peaks_of_flight) = (Vec::new(), peaks);
-        let mut extremes = Self { loads, stage, cone, faded, peaks, peaks_of_phases, peaks_of_flight, warnings };
-        extremes.warn_outside_tables(forces, 0.0);
-        Ok(extremes)
+        let mut peak_tracker = Self { loads, stage, cone, faded, peaks, peaks_of_phases, peaks_of_flight, warnings };
+        peak_tracker.warn_outside_tables(forces, 0.0);
+        Ok(peak_tracker)
     }
 
     /// Notes the peaks and warnings of a step.
     pub(super) fn observe<F: Formulation<N>, const N: usize>(
         &mut self,
-        passage: &Passage<F, N>,
+        view: &StepView<F, N>,
     ) -> Result<(), SimulationError> {
-        let forces = passage.motion.forces();
-        let stage = (passage.phase, forces.regime());
+        let forces = view.motion.forces();
+        let stage = (view.phase, forces.mode());
         if stage != self.stage {
             // The loads may jump where a formula changes, and where something happens.
             let before = std::mem::replace(&mut self.stage, stage);
             if before.0 == stage.0 {
-                self.jump(forces, &passage.start())?;
+                self.jump(forces, &view.start())?;
             } else {
-                self.end_phase(before.0, forces, passage.step.start_time, heat_load(&passage.step.start));
-                self.begin_phase(forces, &passage.start())?;
+                self.end_phase(before.0, forces, view.step.start_time, heat_load(&view.step.start));
+                self.begin_phase(forces, &view.start())?;
             }
-            self.warn_outside_tables(forces, passage.step.start_time);
+            self.warn_outside_tables(forces, view.step.start_time);
         }
-        let end = passage.end();
-        let loads = finite(*passage.loads_at_end(), end.time.re)?;
+        let end = view.end();
+        let loads = finite(*view.loads_at_end(), end.time.re)?;
         let start = std::mem::replace(&mut self.loads, loads);
-        let inside = |part| loads_at(forces, &passage.inside(part));
-        let time = |part| passage.step.time(part);
+        let inside = |part| loads_at(forces, &view.inside(part));
+        let time = |part| view.step.time(part);
         let ends = [(0.0, start), (1.0, loads)];
         // Between the entries of tables a quantity may turn more than once in a step.
-        let quarters = (forces.has_tables() && self.may_rise(&start, &loads, passage.step.length())).then(|| {
+        let quarters = (forces.has_tables() && self.may_rise(&start, &loads, view.step.length())).then(|| {
             let [one, two, three] = [0.25, 0.5, 0.75].map(|part| (part, inside(part)));
             [ends[0], one, two, three, ends[1]]
         });
@@ -83,8 +83,8 @@ impl Extremes {
         {
             let after = outside_cone(forces, &end);
             self.cone = Some(after);
-            let inside = |part| outside_cone(forces, &passage.inside(part));
-            if let Some(part) = event::first_fall(before, after, passage.step.length(), inside) {
+            let inside = |part| outside_cone(forces, &view.inside(part));
+            if let Some(part) = event::first_fall(before, after, view.step.length(), inside) {
                 self.faded = true;
                 self.warnings.push(Warning::LiftFadedNearVertical { time: time(part) });
             }
@@ -93,14 +93,14 @@ impl Extremes {
     }
 
     /// Goes to the loads at a moment at which they may have jumped.
-    fn jump(&mut self, forces: &Forces, now: &Moment) -> Result<(), SimulationError> {
+    fn jump(&mut self, forces: &Forces, now: &StateRate) -> Result<(), SimulationError> {
         self.loads = finite(loads_at(forces, now), now.time.re)?;
         raise_all(&mut self.peaks, &[(0.0, self.loads)], |_| self.loads, |_| now.time.re);
         Ok(())
     }
 
     /// Begins the peaks anew with the loads of a phase at its start.
-    fn begin_phase(&mut self, forces: &Forces, start: &Moment) -> Result<(), SimulationError> {
+    fn begin_phase(&mut self, forces: &Forces, start: &StateRate) -> Result<(), SimulationError> {
         self.loads = finite(loads_at(forces, start), start.time.re)?;
         self.peaks = peaks_at(&self.loads, start.time.re);
         Ok(())
@@ -114,7 +114,7 @@ impl Extremes {
             let state =
                 PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
             let heat = Dual64::from(heat_load.unwrap_or(0.0));
-            self.begin_phase(forces, &Moment { time: Dual64::from(*time), state, heat_load: heat })?;
+            self.begin_phase(forces, &StateRate { time: Dual64::from(*time), state, heat_load: heat })?;
         }
         self.end_phase(*phase, forces, *time, *heat_load);
         Ok(())
@@ -152,7 +152,7 @@ impl Extremes {
             })
     }
 
-    /// Warns of every table outside which the present regime lies, once an edge.
+    /// Warns of every table outside which the present mode lies, once an edge.
     fn warn_outside_tables(&mut self, forces: &Forces, time: f64) {
         for (table, edge, above) in forces.outside_tables() {
             let known = |warning: &Warning| matches!(warning, Warning::OutsideTable { table: of, above: side, .. } if (*of, *side) == (table, above));
@@ -261,11 +261,11 @@ fn finite(loads: Loads<Dual64>, time: f64) -> Result<Loads<Dual64>, SimulationEr
     if finite { Ok(loads) } else { Err(SimulationError::Overflow { time }) }
 }
 
-fn loads_at(forces: &Forces, moment: &Moment) -> Loads<Dual64> {
+fn loads_at(forces: &Forces, moment: &StateRate) -> Loads<Dual64> {
     forces.loads(moment.time, &moment.state)
 }
 
 /// Positive outside the cone about the vertical in which lift fades: cos²γ - ε².
-fn outside_cone(forces: &Forces, moment: &Moment) -> Dual64 {
+fn outside_cone(forces: &Forces, moment: &StateRate) -> Dual64 {
     forces.cos_squared_angle_to_air(&moment.state) - LIFT_FADE_ANGLE * LIFT_FADE_ANGLE
 }

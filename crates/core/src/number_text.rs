@@ -6,22 +6,22 @@ use std::fmt;
 ///
 /// # Examples
 /// ```
-/// use reentry::plain::Plain;
+/// use reentry::number_text::NumberText;
 ///
-/// assert_eq!(Plain(109_054.394).to_string(), "109054");
-/// assert_eq!(Plain(1_234_567.8).to_string(), "1234568");
-/// assert_eq!(Plain(1e12).to_string(), "1e12");
-/// assert_eq!(Plain(std::f64::consts::FRAC_PI_2).to_string(), "1.5708");
+/// assert_eq!(NumberText(109_054.394).to_string(), "109054");
+/// assert_eq!(NumberText(1_234_567.8).to_string(), "1234568");
+/// assert_eq!(NumberText(1e12).to_string(), "1e12");
+/// assert_eq!(NumberText(std::f64::consts::FRAC_PI_2).to_string(), "1.5708");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plain(pub f64);
+pub struct NumberText(pub f64);
 
-/// Significant digits of a [`Plain`] number.
+/// Significant digits of a [`NumberText`] number.
 const DIGITS: usize = 6;
 /// From here on, and below the other, a number has an exponent.
 const LONG: [f64; 2] = [1e7, 1e-4];
 
-impl Plain {
+impl NumberText {
     /// The number that the text says.
     fn said(self) -> f64 {
         let is_whole = (1e6..LONG[0]).contains(&self.0.abs());
@@ -29,7 +29,7 @@ impl Plain {
     }
 }
 
-impl fmt::Display for Plain {
+impl fmt::Display for NumberText {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&all_digits(self.said()))
     }
@@ -40,22 +40,22 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
-/// Numbers for people, side by side: [`Plain`], or with all their digits where rounding would make two of them equal that differ.
+/// Numbers for people, side by side: [`NumberText`], or with all their digits where rounding would make two of them equal that differ.
 ///
 /// # Examples
 /// ```
-/// use reentry::plain::apart;
+/// use reentry::number_text::apart;
 ///
 /// assert_eq!(apart([90.0, 91.234_567_8]), ["90", "91.2346"]);
 /// assert_eq!(apart([90.0, 90.000_000_001]), ["90", "90.000000001"]);
 /// ```
 pub fn apart<const N: usize>(numbers: [f64; N]) -> [String; N] {
     let hidden = |(index, number): (usize, &f64)| {
-        let equal = |other: f64| same(Plain(other).said(), Plain(*number).said()) && !same(other, *number);
+        let equal = |other: f64| same(NumberText(other).said(), NumberText(*number).said()) && !same(other, *number);
         numbers[..index].iter().any(|other| equal(*other))
     };
     let differ = numbers.iter().enumerate().any(hidden);
-    numbers.map(|number| if differ { all_digits(number) } else { Plain(number).to_string() })
+    numbers.map(|number| if differ { all_digits(number) } else { NumberText(number).to_string() })
 }
 
 fn same(one: f64, other: f64) -> bool {

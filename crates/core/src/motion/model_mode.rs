@@ -1,8 +1,8 @@
 //! Where the models change their formulas, and on which side of these places a flight is.
 //!
 //! A step of the integration must not see such a change: an integrator that does grinds its steps down. While a step is taken, the
-//! regime therefore stays what it is, and every formula goes on beyond its own stretch; the flight looks for the instant at which it
-//! leaves the stretch, ends the step there, and [settles](super::Forces::settle) in the next regime.
+//! mode therefore stays what it is, and every formula goes on beyond its own segment; the flight looks for the instant at which it
+//! leaves the segment, ends the step there, and [enters the mode](super::Forces::enter_mode_of) in the next mode.
 
 use num_dual::Dual64;
 
@@ -35,7 +35,7 @@ pub enum Switch {
 
 /// A table or a model of a given range, and the quantity by which something is looked up in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lookup {
+pub enum TableId {
     /// The atmosphere by altitude; outside, the logarithm of its density goes on in a straight line.
     Atmosphere,
     /// The U.S. Standard Atmosphere, 1976, by altitude; below -5 km its lowest layer goes on, above 1000 km its scale height stays.
@@ -61,9 +61,9 @@ pub(crate) enum Quantity {
     AirSpeed,
 }
 
-/// Of every switch the stretch of its formula that holds: 0 before the first boundary, 1 after it, and so on.
+/// Of every switch the segment of its formula that holds: 0 before the first boundary, 1 after it, and so on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Regime([usize; Switch::ALL.len()]);
+pub struct ModelMode([usize; Switch::ALL.len()]);
 
 /// The regimes on both sides of a boundary lead back across it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,8 +87,8 @@ impl Switch {
     }
 }
 
-impl Regime {
-    /// The stretch of a switch.
+impl ModelMode {
+    /// The segment of a switch.
     #[inline(always)]
     pub(crate) fn of(&self, switch: Switch) -> usize {
         self.0[switch as usize]
@@ -107,14 +107,14 @@ impl Quantity {
 }
 
 impl<P: Scalar> Forces<P> {
-    /// The regime that holds.
-    pub fn regime(&self) -> Regime {
-        self.regime
+    /// The mode that holds.
+    pub fn mode(&self) -> ModelMode {
+        self.mode
     }
 
-    /// Changes to another regime.
-    pub fn enter(&mut self, regime: Regime) {
-        self.regime = regime;
+    /// Changes to another mode.
+    pub fn enter(&mut self, mode: ModelMode) {
+        self.mode = mode;
     }
 
     /// Whether any of the models changes its formula anywhere.
@@ -183,41 +183,41 @@ impl Forces {
             || self.canopies.as_ref().is_some_and(|canopies| !canopies.filling.is_empty())
     }
 
-    /// The tables, and the model of a given range, outside which the present regime lies: the edge beyond which it does, and whether that is above it.
-    pub(crate) fn outside_tables(&self) -> impl Iterator<Item = (Lookup, f64, bool)> {
+    /// The tables, and the model of a given range, outside which the present mode lies: the edge beyond which it does, and whether that is above it.
+    pub(crate) fn outside_tables(&self) -> impl Iterator<Item = (TableId, f64, bool)> {
         let atmosphere = match self.models.atmosphere {
-            Atmosphere::Table(_) => Some(Lookup::Atmosphere),
-            Atmosphere::Us76 => Some(Lookup::Us76),
+            Atmosphere::Table(_) => Some(TableId::Atmosphere),
+            Atmosphere::Us76 => Some(TableId::Us76),
             Atmosphere::Vacuum | Atmosphere::Layers(_) | Atmosphere::Exponential { .. } => None,
         };
         let tables = [
             (Switch::Atmosphere, atmosphere),
-            (Switch::Wind, Some(Lookup::Wind)),
-            (Switch::Mach, Some(Lookup::Mach)),
-            (Switch::TableAngleOfAttack, Some(Lookup::AngleOfAttack)),
-            (Switch::Radiation, Some(Lookup::Radiation)),
+            (Switch::Wind, Some(TableId::Wind)),
+            (Switch::Mach, Some(TableId::Mach)),
+            (Switch::TableAngleOfAttack, Some(TableId::AngleOfAttack)),
+            (Switch::Radiation, Some(TableId::Radiation)),
         ];
         tables.into_iter().filter_map(|(switch, table)| {
             let table = table?;
             let (_, range) = self.boundaries(switch)?;
-            let stretch = self.regime.of(switch);
+            let segment = self.mode.of(switch);
             let (first, last) = (*range.first()?, *range.last()?);
-            match stretch {
+            match segment {
                 // One entry holds everywhere.
                 _ if first >= last => None,
                 0 => (switch != Switch::Radiation).then_some((table, first, false)),
-                _ if stretch == range.len() => Some((table, last, true)),
+                _ if segment == range.len() => Some((table, last, true)),
                 _ => None,
             }
         })
     }
 
-    /// Which switch leads from the present regime to the next one, in a state at their boundary: that which is nearest to its own.
-    pub(crate) fn first_to_turn(&self, next: Regime, time: f64, state: &PlanetFixed<f64>) -> Option<Switch> {
+    /// Which switch leads from the present mode to the next one, in a state at their boundary: that which is nearest to its own.
+    pub(crate) fn first_to_turn(&self, next: ModelMode, time: f64, state: &PlanetFixed<f64>) -> Option<Switch> {
         let readings = self.readings(time, state);
         let distance = |switch: &Switch| {
             let (quantity, boundaries) = self.boundaries(*switch)?;
-            let (now, then) = (self.regime.of(*switch), next.of(*switch));
+            let (now, then) = (self.mode.of(*switch), next.of(*switch));
             let boundary = boundaries.get(if then > now { now } else { now.checked_sub(1)? })?;
             (now != then).then(|| (readings[*switch as usize] - boundary).abs() / quantity.resolution())
         };
@@ -225,35 +225,35 @@ impl Forces {
         turning.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(switch, _)| switch)
     }
 
-    /// Enters the regime of a state and of where it moves next.
+    /// Enters the mode of a state and of where it moves next.
     ///
     /// # Errors
     /// When there is none: on either side of a boundary the motion leads back across it.
-    pub(crate) fn settle(&mut self, time: f64, state: &PlanetFixed<f64>) -> Result<(), Chatter> {
+    pub(crate) fn enter_mode_of(&mut self, time: f64, state: &PlanetFixed<f64>) -> Result<(), Chatter> {
         if !self.has_switches {
             return Ok(());
         }
         let mut turned = Switch::Atmosphere;
         // A switch may turn another one: the angle of attack that of its table.
         for _ in 0..=Switch::ALL.len() {
-            let regime = self.regime_ahead(time, state);
+            let mode = self.mode_ahead(time, state);
             // The schedules come last, and first in what is said to switch.
-            let turns = |switch: &Switch| regime.of(*switch) != self.regime.of(*switch);
+            let turns = |switch: &Switch| mode.of(*switch) != self.mode.of(*switch);
             let Some(switch) = Switch::ALL.into_iter().rfind(turns) else { return Ok(()) };
-            (turned, self.regime) = (switch, regime);
+            (turned, self.mode) = (switch, mode);
         }
         Err(Chatter(turned))
     }
 
-    /// The regime to which the forces of the present one lead.
-    fn regime_ahead(&self, time: f64, state: &PlanetFixed<f64>) -> Regime {
+    /// The mode to which the forces of the present one lead.
+    fn mode_ahead(&self, time: f64, state: &PlanetFixed<f64>) -> ModelMode {
         let acceleration = self.acceleration(time, state);
         let moving = PlanetFixed {
             position: state.position.zip_map(&state.velocity, Dual64::new),
             velocity: state.velocity.zip_map(&acceleration, Dual64::new),
         };
         let readings = self.readings(Dual64::new(time, 1.0), &moving);
-        Regime(Switch::ALL.map(|switch| {
+        ModelMode(Switch::ALL.map(|switch| {
             let Some((quantity, boundaries)) = self.boundaries(switch) else { return 0 };
             let now = readings[switch as usize];
             let resolution = quantity.resolution();

@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use super::flight::Flight;
 use super::{SimulationError, arrival};
-use crate::integrate::{System, try_abreast};
+use crate::integrate::{System, try_in_lanes};
 use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
 use crate::scalar::Lanes;
@@ -32,8 +32,8 @@ pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &dyn Interrup
             continue;
         }
         ends.extend(match case.solver.equations {
-            Equations::Cartesian => fly_abreast::<_, _, L>(group, interrupt, Cartesian, Cartesian),
-            Equations::Spherical => fly_abreast::<_, _, L>(group, interrupt, Spherical, Spherical),
+            Equations::Cartesian => fly_in_lanes::<_, _, L>(group, interrupt, Cartesian, Cartesian),
+            Equations::Spherical => fly_in_lanes::<_, _, L>(group, interrupt, Spherical, Spherical),
         });
     }
     ends
@@ -45,12 +45,12 @@ struct Lane<'a, F> {
     flight: Flight<'a, F, 6>,
 }
 
-/// Flies scenarios of the same models in a formulation, of which each has one `alone` and all lanes have one `abreast`.
-fn fly_abreast<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
+/// Flies scenarios of the same models in a formulation, of which each has one `alone` and all lanes have one `in_lanes`.
+fn fly_in_lanes<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
     scenarios: &'a [Scenario],
     interrupt: &'a dyn Interrupt,
     alone: impl Fn(Forces) -> F,
-    abreast: impl Fn(Forces<Lanes<L>>) -> M,
+    in_lanes: impl Fn(Forces<Lanes<L>>) -> M,
 ) -> Vec<End> {
     let mut ends: Vec<End> = scenarios.iter().map(|_| Err(SimulationError::Interrupted { time: 0.0 })).collect();
     let mut waiting = scenarios.iter().enumerate();
@@ -70,12 +70,12 @@ fn fly_abreast<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
     let mut system = None;
     while lanes.iter().any(Option::is_some) {
         let cases = lanes.each_ref().map(|lane| scenarios[lane.as_ref().map_or(0, |lane| lane.index)].case());
-        let abreast = system.get_or_insert_with(|| abreast(forces(cases)));
+        let motion = system.get_or_insert_with(|| in_lanes(forces(cases)));
         let flights = lanes.each_mut().map(|lane| {
             let Flight { integrator, motion, scenario, .. } = &mut lane.as_mut()?.flight;
             Some((integrator, &*motion, scenario.case().stop.time))
         });
-        let steps = try_abreast(abreast, flights);
+        let steps = try_in_lanes(motion, flights);
         for (lane, step) in lanes.iter_mut().zip(steps) {
             let (Some(Lane { index, flight }), Some(step)) = (lane.as_mut(), step) else { continue };
             let end = match step {

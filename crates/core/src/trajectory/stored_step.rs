@@ -2,20 +2,20 @@
 
 use crate::coordinates::PlanetFixed;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Cartesian, Forces, Formulation, Regime, Spherical, heat_load};
+use crate::motion::{Cartesian, Forces, Formulation, ModelMode, Spherical, heat_load};
 
-/// A step of a flight, and the phase and the regime of its models during it.
+/// A step of a flight, and the phase and the mode of its models during it.
 #[derive(Clone, Debug)]
-pub(crate) struct Leg {
-    pub(crate) step: LegStep,
+pub(crate) struct StoredStep {
+    pub(crate) step: StepOfEither,
     pub(crate) phase: usize,
-    pub(crate) regime: Regime,
+    pub(crate) mode: ModelMode,
 }
 
 /// A step, with or without the heat load.
 #[derive(Clone, Debug)]
-pub(crate) enum LegStep {
-    Plain(Step<6>),
+pub(crate) enum StepOfEither {
+    Unheated(Step<6>),
     Heated(Step<7>),
 }
 
@@ -25,43 +25,43 @@ pub(crate) enum Motion {
     Spherical(Spherical),
 }
 
-/// The motion inside a leg.
-pub(crate) enum LegInterpolant {
-    Plain(Interpolant<6>),
+/// The motion inside a step.
+pub(crate) enum InterpolantOfEither {
+    Unheated(Interpolant<6>),
     Heated(Interpolant<7>),
 }
 
-impl Leg {
+impl StoredStep {
     /// s.
     pub(crate) fn start_time(&self) -> f64 {
         match &self.step {
-            LegStep::Plain(step) => step.start_time,
-            LegStep::Heated(step) => step.start_time,
+            StepOfEither::Unheated(step) => step.start_time,
+            StepOfEither::Heated(step) => step.start_time,
         }
     }
 
     /// s.
     pub(crate) fn end_time(&self) -> f64 {
         match &self.step {
-            LegStep::Plain(step) => step.end_time,
-            LegStep::Heated(step) => step.end_time,
+            StepOfEither::Unheated(step) => step.end_time,
+            StepOfEither::Heated(step) => step.end_time,
         }
     }
 
-    /// The instant at a part of the leg, s.
+    /// The instant at a part of the step, s.
     pub(crate) fn time(&self, part: f64) -> f64 {
         match &self.step {
-            LegStep::Plain(step) => step.time(part),
-            LegStep::Heated(step) => step.time(part),
+            StepOfEither::Unheated(step) => step.time(part),
+            StepOfEither::Heated(step) => step.time(part),
         }
     }
 }
 
-impl LegInterpolant {
+impl InterpolantOfEither {
     /// The state and the heat load, J/m², at an instant.
     pub(crate) fn at(&self, motion: &Motion, time: f64) -> (PlanetFixed<f64>, Option<f64>) {
         match self {
-            Self::Plain(interpolant) => motion.state(&interpolant.state_at(time)),
+            Self::Unheated(interpolant) => motion.state(&interpolant.state_at(time)),
             Self::Heated(interpolant) => motion.state(&interpolant.state_at(time)),
         }
     }
@@ -80,20 +80,28 @@ impl Motion {
         }
     }
 
-    pub(crate) fn interpolant(&self, step: &LegStep) -> LegInterpolant {
+    pub(crate) fn interpolant(&self, step: &StepOfEither) -> InterpolantOfEither {
         match (self, step) {
-            (Self::Cartesian(motion), LegStep::Plain(step)) => LegInterpolant::Plain(step.interpolant(motion)),
-            (Self::Cartesian(motion), LegStep::Heated(step)) => LegInterpolant::Heated(step.interpolant(motion)),
-            (Self::Spherical(motion), LegStep::Plain(step)) => LegInterpolant::Plain(step.interpolant(motion)),
-            (Self::Spherical(motion), LegStep::Heated(step)) => LegInterpolant::Heated(step.interpolant(motion)),
+            (Self::Cartesian(motion), StepOfEither::Unheated(step)) => {
+                InterpolantOfEither::Unheated(step.interpolant(motion))
+            }
+            (Self::Cartesian(motion), StepOfEither::Heated(step)) => {
+                InterpolantOfEither::Heated(step.interpolant(motion))
+            }
+            (Self::Spherical(motion), StepOfEither::Unheated(step)) => {
+                InterpolantOfEither::Unheated(step.interpolant(motion))
+            }
+            (Self::Spherical(motion), StepOfEither::Heated(step)) => {
+                InterpolantOfEither::Heated(step.interpolant(motion))
+            }
         }
     }
 
     /// The state at the end of a step.
-    pub(crate) fn end(&self, step: &LegStep) -> PlanetFixed<f64> {
+    pub(crate) fn end(&self, step: &StepOfEither) -> PlanetFixed<f64> {
         match step {
-            LegStep::Plain(step) => self.state(&step.end).0,
-            LegStep::Heated(step) => self.state(&step.end).0,
+            StepOfEither::Unheated(step) => self.state(&step.end).0,
+            StepOfEither::Heated(step) => self.state(&step.end).0,
         }
     }
 

@@ -1,0 +1,129 @@
+//! The boundaries at which the formulas of the models change.
+
+use num_dual::Dual64;
+
+use super::detector::Detector;
+use super::step_view::StepView;
+use crate::control::Against;
+use crate::integrate::event;
+use crate::motion::{Forces, Formulation, Quantity, StateRate, Switch};
+
+/// Detects where a flight leaves the segments on which the present formulas hold.
+///
+/// Boundaries on the time are not among them, since no step goes beyond one: see [`next_boundary_in_time`].
+#[derive(Clone, Copy)]
+pub(super) struct ModelBoundaryDetector {
+    /// The quantities on which formulas depend, with their rates, at the end of the last step; zero where there is none.
+    readings: [Dual64; Switch::ALL.len()],
+}
+
+/// Where a flight leaves a segment.
+#[derive(Clone, Copy)]
+pub(super) struct BoundaryCrossing {
+    /// Whose formula changes there.
+    pub(super) switch: Switch,
+    boundary: Boundary,
+}
+
+/// An end of a segment.
+#[derive(Clone, Copy)]
+struct Boundary {
+    value: f64,
+    /// 1 where the flight comes from above, -1 from below.
+    side: f64,
+    /// So far beyond the value the segment ends: where a flight moves along a boundary, rounding must not carry it to and fro.
+    margin: f64,
+}
+
+impl Boundary {
+    /// How far a quantity is inside the segment.
+    fn inside(self, quantity: Dual64) -> Dual64 {
+        (quantity - self.value) * self.side + self.margin
+    }
+}
+
+impl BoundaryCrossing {
+    /// Whether the flight is led back into the segment that it leaves, by forces that change its speed at once.
+    pub(super) fn is_undone(
+        &self,
+        before: &ModelBoundaryDetector,
+        after: &ModelBoundaryDetector,
+        forces: &Forces,
+    ) -> bool {
+        let by_speed =
+            matches!(forces.boundaries(self.switch), Some((Quantity::Along(Against::Speed | Against::Mach), _)));
+        let rate = |of: &ModelBoundaryDetector| self.boundary.inside(of.readings[self.switch as usize]).eps;
+        by_speed && rate(before) < 0.0 && rate(after) > 0.0
+    }
+}
+
+impl ModelBoundaryDetector {
+    pub(super) fn new(forces: &Forces, start: &StateRate) -> Self {
+        Self { readings: read(forces, start) }
+    }
+}
+
+impl Detector for ModelBoundaryDetector {
+    type Located = BoundaryCrossing;
+
+    fn locate<F: Formulation<N>, const N: usize>(&self, step: &StepView<F, N>) -> Option<(f64, BoundaryCrossing)> {
+        let forces = step.motion.forces();
+        if !forces.has_switches() {
+            return None;
+        }
+        let ends = *step.readings_at_end();
+        let mut first: Option<(f64, BoundaryCrossing)> = None;
+        for switch in Switch::ALL {
+            let [start, end] = [self.readings, ends].map(|readings| readings[switch as usize]);
+            for boundary in boundaries_around(forces, switch).into_iter().flatten() {
+                let inside = |part| boundary.inside(read(forces, &step.inside(part))[switch as usize]);
+                let [start, end] = [start, end].map(|quantity| boundary.inside(quantity));
+                let length = step.length();
+                if event::seems_to_fall(start, end, length)
+                    && let Some(part) = event::first_fall(start, end, length, inside)
+                    && first.is_none_or(|(least, _)| part < least)
+                {
+                    first = Some((part, BoundaryCrossing { switch, boundary }));
+                }
+            }
+        }
+        first
+    }
+
+    fn ahead(&self, crossing: BoundaryCrossing, forces: &Forces, now: &StateRate) -> Dual64 {
+        crossing.boundary.inside(read(forces, now)[crossing.switch as usize])
+    }
+
+    fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
+        if step.motion.forces().has_switches() {
+            self.readings = *step.readings_at_end();
+        }
+    }
+}
+
+/// When the next formula changes by time alone, s.
+pub(super) fn next_boundary_in_time(forces: &Forces) -> f64 {
+    let corner = |switch| match forces.boundaries(switch) {
+        Some((Quantity::Along(Against::Time), corners)) => corners.get(forces.mode().of(switch)).copied(),
+        _ => None,
+    };
+    Switch::ALL.into_iter().filter_map(corner).fold(f64::INFINITY, f64::min)
+}
+
+/// The ends of the segment on which a formula holds.
+fn boundaries_around(forces: &Forces, switch: Switch) -> [Option<Boundary>; 2] {
+    let segment = forces.mode().of(switch);
+    match forces.boundaries(switch) {
+        None | Some((Quantity::Along(Against::Time), _)) => [None, None],
+        Some((quantity, boundaries)) => {
+            let margin = 2.0 * quantity.resolution();
+            let at = |index: usize, side| boundaries.get(index).map(|value| Boundary { value: *value, side, margin });
+            [segment.checked_sub(1).and_then(|below| at(below, 1.0)), at(segment, -1.0)]
+        }
+    }
+}
+
+/// The quantity of every switch.
+fn read(forces: &Forces, now: &StateRate) -> [Dual64; Switch::ALL.len()] {
+    forces.readings(now.time, &now.state)
+}

@@ -1,0 +1,61 @@
+//! The end of the flight where the altitude falls to the stop altitude.
+
+use num_dual::Dual64;
+
+use super::detector::Detector;
+use super::step_view::StepView;
+use crate::integrate::event;
+use crate::motion::{Forces, Formulation, StateRate};
+use crate::planet::Shape;
+
+/// Detects the fall to the stop altitude.
+#[derive(Clone, Copy)]
+pub(super) struct StopAltitudeDetector {
+    shape: Shape,
+    /// m, along the radius vector.
+    stop_altitude: f64,
+    /// The height above the stop altitude, with its rate, at the end of the last step.
+    height: Dual64,
+}
+
+impl StopAltitudeDetector {
+    pub(super) fn new(shape: Shape, stop_altitude: f64, start: &StateRate) -> Self {
+        let mut detector = Self { shape, stop_altitude, height: Dual64::from(0.0) };
+        detector.go_to(start);
+        detector
+    }
+
+    /// The flight leaves the stop altitude upward, even where rounding gives it no rate, or a falling one.
+    pub(super) fn start_upward(&mut self) {
+        self.height.eps = self.height.eps.max(f64::MIN_POSITIVE);
+    }
+
+    /// Keeps the height at an instant.
+    pub(super) fn go_to(&mut self, now: &StateRate) {
+        self.height = self.height_at(now);
+    }
+
+    /// The height above the stop altitude, m, with its rate.
+    pub(super) fn height_at(&self, now: &StateRate) -> Dual64 {
+        self.shape.altitude(&now.state.position) - self.stop_altitude
+    }
+}
+
+impl Detector for StopAltitudeDetector {
+    type Located = ();
+
+    /// The first crossing downwards, a dip inside the step included.
+    fn locate<F: Formulation<N>, const N: usize>(&self, step: &StepView<F, N>) -> Option<(f64, ())> {
+        let end = self.height_at(&step.end());
+        let part = event::first_fall(self.height, end, step.length(), |part| self.height_at(&step.inside(part)))?;
+        Some((part, ()))
+    }
+
+    fn ahead(&self, (): (), _: &Forces, now: &StateRate) -> Dual64 {
+        self.height_at(now)
+    }
+
+    fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
+        self.go_to(&step.end());
+    }
+}
