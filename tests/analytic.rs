@@ -416,7 +416,7 @@ fn theories_that_do_not_apply_are_refused_with_every_fault() {
 }
 
 #[test]
-fn a_theory_gives_numbers_within_its_stretch_and_none_outside() {
+fn a_theory_gives_numbers_within_its_segment_and_none_outside() {
     let ends = Cell::new(0);
     proptest!(config(100), |(case in random_entry(), light in -6.0..0.0)| {
         let Vehicle { mass, reference_area, ref aerodynamics, .. } = case.vehicle;
@@ -466,7 +466,7 @@ fn a_theory_gives_numbers_within_its_stretch_and_none_outside() {
 
 /// Where a theory holds is a matter of the flight, not of the rows that are wanted.
 #[test]
-fn the_stretch_does_not_depend_on_the_rows() {
+fn the_segment_does_not_depend_on_the_rows() {
     let pull_up = |lift, drag, flight_path_angle| {
         let entry = FlightPath {
             radius: 6_478_137.0,
@@ -515,7 +515,7 @@ fn the_stretch_does_not_depend_on_the_rows() {
 }
 
 #[test]
-fn the_flag_ends_the_search_for_the_stretch() {
+fn the_flag_ends_the_search_for_the_segment() {
     let case = table(4, LISTING);
     let interrupted = theory(Solution::Loh, case.clone()).compare(&fly(&case), &[], &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));

@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
 use reentry::atmosphere::us76;
-use reentry::integrate::{Integrator, Limits, StepBounds, Statistics, System};
+use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{arrival, arrivals};

@@ -8,8 +8,7 @@ use proptest::test_runner::RngSeed;
 use reentry::scenario::Equations;
 use reentry::simulate::SimulationError;
 use reentry::{
-    Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Trajectory, Vehicle, Wind,
-    simulate,
+    Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Trajectory, Vehicle, simulate,
 };
 
 /// Jameson 2006, Table 2.
@@ -25,16 +24,8 @@ pub(crate) fn target_2() -> Case {
     };
     Case {
         planet: Planet::EARTH_WGS84.spherical(),
-        atmosphere: Atmosphere::EARTH_JAMESON,
-        density_factor: 1.0,
-        wind: Wind::Still,
-        vehicle: vehicle(700.0, 0.216_419, 0.2, 0.2),
         control: Control::banked(0.8),
-        heating: None,
-        events: Vec::new(),
-        initial_state: initial_state.to_planet_fixed(),
-        stop: Stop::default(),
-        solver: Solver::default(),
+        ..Case::new(vehicle(700.0, 0.216_419, 0.2, 0.2), initial_state.to_planet_fixed())
     }
 }
 

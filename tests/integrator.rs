@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use num_dual::Dual64;
-use reentry::integrate::{IntegrationError, Integrator, Interpolant, Limits, StepBounds, Step, System, event, follow};
+use reentry::integrate::{IntegrationError, Integrator, Interpolant, Limits, Step, StepBounds, System, event, follow};
 use reentry::motion::{Cartesian, Spherical};
 use reentry::scalar::Scalar;
 

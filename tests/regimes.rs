@@ -10,7 +10,7 @@ use reentry::coordinates::Inertial;
 use reentry::motion::Switch;
 use reentry::planet::{Gravity, Zonal};
 use reentry::simulate::SimulationError;
-use reentry::trajectory::{TableId, Sampling, Termination, Warning};
+use reentry::trajectory::{Sampling, TableId, Termination, Warning};
 use reentry::vehicle::{AlphaMachTable, MachTable};
 use reentry::wind::WindTable;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};

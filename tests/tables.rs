@@ -461,7 +461,7 @@ fn models() -> Vec<(Atmosphere, usize)> {
     ]
 }
 
-fn stretch_of(boundaries: &[f64], altitude: f64) -> usize {
+fn segment_of(boundaries: &[f64], altitude: f64) -> usize {
     boundaries.iter().filter(|boundary| altitude >= **boundary).count()
 }
 
@@ -518,7 +518,7 @@ proptest! {
             }
             let altitude = altitudes[0];
             prop_assume!(model.boundaries().iter().all(|boundary| f64::abs(altitude - boundary) > 2.0));
-            let segment = stretch_of(model.boundaries(), altitude);
+            let segment = segment_of(model.boundaries(), altitude);
             let hint = Hint::default();
             let (density, sound) = model.density_and_sound(segment, Dual64::new(altitude, 1.0), &hint);
             let [above, below] = [1.0, -1.0].map(|step| model.density_and_sound(segment, altitude + step, &hint));
@@ -569,7 +569,7 @@ fn a_table_of_an_exponential_atmosphere_is_that_atmosphere() {
     for step in -50..300 {
         let h = 500.0 * f64::from(step);
         let expected = surface_density * f64::exp(-h / scale_height);
-        let air = table.sample(stretch_of(table.boundaries(), h), h, &hint);
+        let air = table.sample(segment_of(table.boundaries(), h), h, &hint);
         relative(&format!("density at {h}"), air.density, expected, 1e-13);
         relative(&format!("pressure at {h}"), air.pressure.unwrap(), 9.8 * scale_height * expected, 1e-13);
         // Beyond its ends the temperature stays.
@@ -648,7 +648,7 @@ fn seven_layers_are_as_near_the_standard_as_documented() {
     for layer in earth.layers() {
         near("density at a base", layer.density, us76::density(layer.base_altitude), 0.0);
     }
-    let error = |h: f64| earth.density(stretch_of(earth.boundaries(), h), h) / us76::density(h) - 1.0;
+    let error = |h: f64| earth.density(segment_of(earth.boundaries(), h), h) / us76::density(h) - 1.0;
     near("at 130 km", error(130e3), 0.0, 1e-13);
     let worst = |steps: std::ops::Range<u32>| steps.map(|step| error(10.0 * f64::from(step)).abs()).fold(0.0, f64::max);
     near("from 0 to 10 km", worst(0..1000), 0.034, 5e-4);

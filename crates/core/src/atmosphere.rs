@@ -77,7 +77,7 @@ impl Atmosphere {
     pub fn density<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
         match *self {
             Self::Exponential { surface_density, scale_height } => falling(surface_density, altitude, scale_height),
-            _ => self.density_by_stretch(segment, altitude, hint),
+            _ => self.density_of_segment(segment, altitude, hint),
         }
     }
 
@@ -85,7 +85,7 @@ impl Atmosphere {
     /// they do not make room for it either.
     #[cold]
     #[inline(never)]
-    fn density_by_stretch<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
+    fn density_of_segment<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
         match self {
             Self::Vacuum => S::zero(),
             Self::Us76 => us76::density_in(segment, altitude),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::interpolation::{self, TableError};
 use crate::scalar::Scalar;
 
-/// How the vehicle is flown.
+/// The commands of the vehicle's angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
     /// σ, rad: 0 lift in the plane of radius and velocity, upward;
@@ -24,7 +24,7 @@ pub enum Command {
     Schedule(Arc<Schedule>),
 }
 
-/// What a schedule runs along.
+/// The independent variable of a schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
     /// Since the start, s.
@@ -109,7 +109,7 @@ impl Schedule {
         Ok(Self { against, corners, segments })
     }
 
-    /// What it runs along.
+    /// Its independent variable.
     pub fn against(&self) -> Against {
         self.against
     }

@@ -10,9 +10,9 @@ use crate::vehicle::Aerodynamics;
 /// It happens at the first instant at which its trigger is met, and never again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When.
+    /// What the event waits for.
     pub when: Trigger,
-    /// What; nothing at all makes it a mark.
+    /// What the event changes. An event that changes nothing marks an instant of the flight.
     pub then: Effect,
 }
 
@@ -25,7 +25,7 @@ pub enum Trigger {
     After {
         /// The place of the other event in the list.
         event: usize,
-        /// s.
+        /// The time after that event, s; not negative.
         delay: f64,
     },
 }
@@ -61,15 +61,15 @@ impl Trigger {
 /// at once if it moves on to the far side, however slowly; one that begins beyond must come back first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Which.
+    /// The quantity that passes the value.
     pub quantity: Quantity,
     /// The value, in the unit of the quantity.
     pub value: f64,
-    /// To which side.
+    /// Whether the quantity must rise or fall through the value.
     pub direction: Direction,
 }
 
-/// What may pass a value.
+/// A quantity of the flight that a condition may name, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Since the start, s.
@@ -144,12 +144,12 @@ pub struct Effect {
     pub deploy: Option<Parachute>,
 }
 
-/// What becomes of the thrust.
+/// How an event changes the thrust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Engine {
-    /// It is switched on, in place of one that burns.
+    /// The engine starts; a thrust that acts ends.
     On(Thrust),
-    /// It is switched off.
+    /// The engine stops.
     Off,
 }
 
@@ -210,7 +210,7 @@ impl Condition {
         }
     }
 
-    /// So near the value, a quantity counts as on it: far more than a rounding, far less than anybody sees.
+    /// A quantity that is nearer to the value than this counts as on it: far more than a rounding error, and far less than matters.
     pub fn resolution(&self) -> f64 {
         match self.quantity {
             Quantity::Time => 1e-9,

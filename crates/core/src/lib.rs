@@ -18,7 +18,7 @@
 //! ```
 //! use std::sync::atomic::AtomicBool;
 //!
-//! use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Vehicle, Wind, simulate};
+//! use reentry::{Aerodynamics, Case, Control, FlightPath, Planet, Scenario, Vehicle, simulate};
 //!
 //! let entry = FlightPath {
 //!     radius: 6_500_140.0,
@@ -28,28 +28,38 @@
 //!     flight_path_angle: -0.523_599,
 //!     heading: 1.195_427,
 //! };
+//! let vehicle = Vehicle {
+//!     mass: 700.0,
+//!     reference_area: 0.216_419,
+//!     aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.2, drag_coefficient: 0.2 },
+//!     nose_radius: None,
+//! };
 //! let case = Case {
 //!     planet: Planet::EARTH_WGS84.spherical(),
-//!     atmosphere: Atmosphere::EARTH_JAMESON,
-//!     density_factor: 1.0,
-//!     wind: Wind::Still,
-//!     vehicle: Vehicle {
-//!         mass: 700.0,
-//!         reference_area: 0.216_419,
-//!         aerodynamics: Aerodynamics::Constant { lift_coefficient: 0.2, drag_coefficient: 0.2 },
-//!         nose_radius: None,
-//!     },
 //!     control: Control::banked(0.8),
-//!     heating: None,
-//!     events: Vec::new(),
-//!     initial_state: entry.to_planet_fixed(),
-//!     stop: Stop::default(),
-//!     solver: Solver::default(),
+//!     ..Case::new(vehicle, entry.to_planet_fixed())
 //! };
 //! let flight = simulate(&Scenario::new(case)?, &AtomicBool::new(false))?;
 //! assert!((flight.end_time() - 157.436_433).abs() < 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Glossary
+//!
+//! | word | meaning |
+//! | --- | --- |
+//! | case, scenario | a question, and a question that was checked |
+//! | phase | a part of the flight during which vehicle, thrust and parachutes stay the same |
+//! | mode | of each piecewise model (a table, layers, a schedule) the segment whose formula is in use |
+//! | switch | one of the piecewise models, which changes its formula at a boundary between segments |
+//! | step | a step of the integrator that was accepted; a stored step is kept with its phase and mode |
+//! | detector | what locates the place in a step at which it must end: the stop altitude, a model boundary, a condition |
+//! | condition | a quantity that rises or falls through a value |
+//! | trigger | a condition, or a time after an event: what an event or a stop waits for |
+//! | event | what happens once, at its trigger; its effect changes the vehicle, the engine, a parachute or the velocity |
+//! | event record | an event that happened, with the state before and after it |
+//! | arrival | the end of a flight: its time, state and termination |
+//! | peak | the greatest value of a load or a heat flux, located between the steps |
 //!
 //! # Reference
 //!

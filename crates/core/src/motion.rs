@@ -13,7 +13,7 @@ pub use loads::Loads;
 pub use model_mode::{ModelMode, Switch, TableId};
 pub use spherical::Spherical;
 
-pub(crate) use model_mode::{Chatter, Quantity};
+pub(crate) use model_mode::{Chatter, SwitchQuantity};
 pub(crate) use quantity::StateRate;
 
 use nalgebra::Vector3;
@@ -44,18 +44,28 @@ const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
 /// Times of drag that a step may last; see [`Forces::longest_step`].
 const DRAG_TIMES_A_STEP: f64 = 1.5;
 
-/// What acts on the vehicle; the parameters may carry derivatives, or belong to several vehicles side by side.
+/// The forces on the vehicle: gravity, lift, drag, thrust and parachutes. The parameters may carry derivatives (dual numbers), or be those
+/// of several vehicles in the lanes of one computation.
 #[derive(Clone, Debug)]
 pub struct Forces<P = f64> {
+    /// The models, in which the numbers of `parameters` are replaced by 0 or 1: both must come from the same case.
     models: Models,
+    /// The numbers that are taken out of the models.
     parameters: Parameters<P>,
+    /// The reference area over the mass, m²/kg.
     area_over_mass: P,
-    /// Of the vehicle at the instant from which a burn counts, kg; where the parameters have ratios of it, not theirs.
+    /// The mass of the vehicle at the start of the phase, kg. It differs from that of the parameters where a vehicle is given by its
+    /// ballistic coefficient.
     mass: P,
+    /// Sine and cosine of a constant bank angle.
     sin_cos_bank: (P, P),
+    /// The thrust, while the engine runs.
     burn: Option<Burn<P>>,
+    /// The parachutes that are deployed.
     canopies: Option<Canopies<P>>,
+    /// The segment of each piecewise model that is in use.
     mode: ModelMode,
+    /// Whether any model is piecewise.
     has_switches: bool,
     /// Whether all models are those of the thesis. Functions with a constant `THESIS` know it when they are compiled, so that what
     /// a case does not use does not cost it a tenth of its time.
@@ -65,7 +75,7 @@ pub struct Forces<P = f64> {
     cache: LookupCache,
 }
 
-/// Where the tables were last looked at.
+/// The cells of the tables at which the last look-ups ended, where the next ones begin.
 #[derive(Clone, Debug, Default)]
 struct LookupCache {
     atmosphere: Hint,
@@ -73,61 +83,61 @@ struct LookupCache {
     angle_of_attack_and_mach: [Hint; 2],
 }
 
-/// What all vehicles side by side have in common.
+/// The models of a case, without the numbers of [`Parameters`]: what all lanes of a computation have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Models {
-    /// Where they fly.
+    /// The planet: gravity, shape and rotation.
     pub planet: Planet,
     /// The air, which turns with the planet.
     pub atmosphere: Atmosphere,
-    /// How the air moves against the planet.
+    /// The velocity of the air relative to the planet.
     pub wind: Wind,
-    /// The coefficients.
+    /// The coefficients of lift and drag.
     pub aerodynamics: Aerodynamics,
-    /// The angles at which the vehicle flies.
+    /// Bank angle and angle of attack.
     pub control: Control,
-    /// The heating of its nose, where it is asked for.
+    /// The heating at the stagnation point; none where it is not asked for.
     pub heating: Option<Stagnation>,
 }
 
-/// The numbers that may vary, beside the state.
+/// The numbers that may carry derivatives, beside the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<P> {
-    /// kg.
+    /// The mass, kg; for a vehicle given by its ballistic coefficient that coefficient, kg/m².
     pub mass: P,
-    /// m².
+    /// The reference area, m²; 1 for a vehicle given by its ballistic coefficient.
     pub reference_area: P,
-    /// `C_L` less that of the model.
+    /// The lift coefficient, less that of the model.
     pub lift_coefficient: P,
-    /// `C_D` less that of the model.
+    /// The drag coefficient, less that of the model.
     pub drag_coefficient: P,
     /// The density over that of the model.
     pub density: P,
-    /// σ less that of the model, rad.
+    /// The bank angle, less that of the model, rad.
     pub bank_angle: P,
 }
 
-/// A thrust that is on; in numbers of the vehicle's mass at a given instant.
+/// A thrust that acts, and the rate at which it burns propellant, over the mass of the vehicle at a given instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Burn<P> {
-    /// Where to.
+    /// The direction of the thrust.
     pub along: Axis,
-    /// The instant, s.
+    /// The instant of that mass, s.
     pub since: P,
-    /// The thrust over the mass then, m/s².
+    /// The thrust over that mass, m/s².
     pub acceleration: P,
-    /// The part of the mass then that is burnt in a second, 1/s.
+    /// The mass flow over that mass, 1/s.
     pub flow: P,
 }
 
 impl<P: Scalar> Burn<P> {
-    /// The mass at the instant over the mass at a time, s: the rate at which it is burnt is constant.
+    /// The mass at the instant `since` divided by the mass at `time`, s. The mass flow is constant.
     #[inline(always)]
     fn mass_ratio<S: Over<P>>(&self, time: S) -> S {
         self.mass_left(time).recip()
     }
 
-    /// The mass at a time, s, over the mass at the instant.
+    /// The mass at `time`, s, divided by the mass at the instant `since`.
     #[inline(always)]
     fn mass_left<S: Over<P>>(&self, time: S) -> S {
         S::one() - (time + -self.since) * self.flow
@@ -530,7 +540,7 @@ impl<S: Scalar> Flow<S> {
         }
     }
 
-    /// What a schedule may run along.
+    /// The value of the independent variable of a schedule.
     #[inline(always)]
     fn quantity(&self, against: Against, time: S) -> S {
         match against {

@@ -20,20 +20,20 @@ pub struct Canopy {
     pub event: usize,
     /// The parachute.
     pub parachute: Parachute,
-    /// When it was deployed, s.
+    /// The time of the deployment, s.
     pub deployed: f64,
-    /// How far it has opened.
+    /// The state of its inflation.
     pub inflation: Inflation,
 }
 
-/// How far a canopy has opened.
+/// The state of the inflation of a canopy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inflation {
-    /// It does not fill yet, and has no drag.
+    /// The inflation has not begun: the canopy has no drag.
     Ahead,
-    /// It fills.
+    /// The canopy fills: its drag area grows with the square of the time.
     Running,
-    /// It is full.
+    /// The canopy is full.
     Over,
 }
 
@@ -97,9 +97,9 @@ pub struct Canopies<P> {
 pub struct Filling<P> {
     /// The drag area of the full canopy over the vehicle's mass, m²/kg.
     pub full: P,
-    /// When it began to fill, s.
+    /// The time at which the inflation began, s.
     pub since: P,
-    /// How long it fills, s.
+    /// The duration of the inflation, s.
     pub inflation_time: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The question: what flies where, from which state, until when, and how exactly.
+//! A case (vehicle, initial state, environment, events, stop conditions, solver), and the check that it can be flown.
 
 mod bounds;
 mod phase;
@@ -21,7 +21,7 @@ use crate::planet::Planet;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
 
-/// When a flight ends: with the first of these.
+/// The conditions that end a flight, whichever is met first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stop {
     /// The altitude, m, along the radius vector, whose downward crossing ends the flight.
@@ -30,7 +30,7 @@ pub struct Stop {
     pub time: f64,
     /// The altitude, m, along the radius vector, whose upward crossing ends the flight.
     pub ceiling: Option<f64>,
-    /// What ends the flight beside these, each by itself.
+    /// Further conditions, each of which ends the flight.
     pub when: Vec<Trigger>,
 }
 
@@ -58,7 +58,7 @@ pub enum Equations {
     Spherical,
 }
 
-/// How to integrate.
+/// The settings of the integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solver {
     /// The equations.
@@ -75,41 +75,41 @@ impl Default for Solver {
     }
 }
 
-/// The parts of a scenario, not yet checked.
+/// A case to simulate, not yet checked: see [`Scenario::new`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Where it flies.
+    /// The planet: gravity, shape and rotation.
     pub planet: Planet,
-    /// The air.
+    /// The model of the atmosphere.
     pub atmosphere: Atmosphere,
-    /// By how much the air is denser than its model.
+    /// The density of the air over that of its model.
     pub density_factor: f64,
-    /// How the air moves.
+    /// The velocity of the air relative to the planet.
     pub wind: Wind,
-    /// What flies.
+    /// Mass, reference area, aerodynamics and nose radius.
     pub vehicle: Vehicle,
-    /// How it is flown.
+    /// Bank angle and angle of attack.
     pub control: Control,
-    /// How it is heated, if that is wanted.
+    /// The correlations of the heating; none where no heat flux is wanted.
     pub heating: Option<Heating>,
-    /// What happens on the way.
+    /// The events, in the order of the request; each happens at most once.
     pub events: Vec<Event>,
     /// The state at t = 0.
     pub initial_state: PlanetFixed<f64>,
-    /// When it ends.
+    /// The conditions that end the flight.
     pub stop: Stop,
-    /// How to integrate.
+    /// The settings of the integration.
     pub solver: Solver,
 }
 
-/// A sound case: one that exists can be flown.
+/// A case that was checked, and can be flown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     case: Case,
     starts_on_stop_altitude: bool,
 }
 
-/// Something in a case that cannot be flown.
+/// A reason for which a case cannot be flown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A number out of its bounds.
@@ -119,7 +119,7 @@ pub enum Fault {
         field: Cow<'static, str>,
         /// The number.
         value: f64,
-        /// What it may be.
+        /// The values that it may have.
         bound: Bound,
     },
     /// The planet is too flat or too long.
@@ -295,10 +295,28 @@ impl Scenario {
 }
 
 impl Case {
-    /// What acts on the vehicle at the start.
+    /// A case of a vehicle and its planet-fixed state at t = 0, with the defaults of all else: the Earth of WGS 84 with gravity of its mass
+    /// alone, the exponential atmosphere of the thesis, still air, no bank angle, no heating and no events.
+    pub fn new(vehicle: Vehicle, initial_state: PlanetFixed<f64>) -> Self {
+        Self {
+            planet: Planet::EARTH_WGS84,
+            atmosphere: Atmosphere::EARTH_JAMESON,
+            density_factor: 1.0,
+            wind: Wind::Still,
+            vehicle,
+            control: Control::banked(0.0),
+            heating: None,
+            events: Vec::new(),
+            initial_state,
+            stop: Stop::default(),
+            solver: Solver::default(),
+        }
+    }
+
+    /// The forces on the vehicle at the start.
     pub fn forces(&self) -> Forces {
         let mut forces = Phase::first(self).forces(self);
-        // Where no mode holds at the start, the flight says so.
+        // The flight refuses a start at which no mode holds.
         let _ = forces.enter_mode_of(0.0, &self.initial_state);
         forces
     }

@@ -211,8 +211,8 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     let mut delays = vec![Dual::from(0.0); flight.case.events.len()];
     let triggers = flight.case.events.iter().map(|event| &event.when).chain(&flight.case.stop.when);
     let awaited: BTreeSet<usize> = triggers.filter_map(Trigger::awaited).collect();
-    let mut stage = Stage::first(flight, parameters);
-    let mut forces = stage.forces(flight.flown.start.mode);
+    let mut phase = VariedPhase::first(flight, parameters);
+    let mut forces = phase.forces(flight.flown.start.mode);
     let mut motion = formulation(forces.clone());
     let mut event_records = event_records.iter().peekable();
     for step in steps {
@@ -221,20 +221,20 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
             return Err(SimulationError::Interrupted { time });
         }
         let is_awaited = |record: &&EventRecord| record.before.time <= time && awaited.contains(&record.event);
-        if (step.phase, step.mode) != (stage.phase, forces.mode()) || event_records.peek().is_some_and(is_awaited) {
+        if (step.phase, step.mode) != (phase.number, forces.mode()) || event_records.peek().is_some_and(is_awaited) {
             let now: Vec<_> =
                 std::iter::from_fn(|| event_records.next_if(|record| record.before.time <= time)).collect();
             let place = Place { time, rates: motion.derivative(time.into(), &state), state, track: &track };
-            let delay = turning_delay::<F, N>(&stage, &forces, &now, step.mode, &place, &delays);
-            // So long the rates before the turn hold, and not yet those after it.
+            let delay = turning_delay::<F, N>(&phase, &forces, &now, step.mode, &place, &delays);
+            // During the delay the rates before the change hold in place of those after it.
             state = from_fn(|i| state[i] + place.rates[i] * delay);
             for record in now {
                 delays[record.event] = delay;
-                stage = stage.changed_by_time(record.before.phase, delay).after(record, delay);
-                state = push::<F, N>(flight, record, delay, &state);
+                phase = phase.changed_by_time(record.before.phase, delay).after(record, delay);
+                state = apply_impulse::<F, N>(flight, record, delay, &state);
             }
-            stage = stage.changed_by_time(step.phase, delay);
-            forces = stage.forces(step.mode);
+            phase = phase.changed_by_time(step.phase, delay);
+            forces = phase.forces(step.mode);
             motion = formulation(forces.clone());
             let next = motion.derivative(time.into(), &state);
             state = from_fn(|i| state[i] - next[i] * delay);
@@ -251,19 +251,19 @@ fn arrival_of<F: Formulation<N>, M: System<Dual, N>, const N: usize>(
     };
     let delay = match trigger {
         None => Dual::from(0.0),
-        Some(Trigger::Condition(condition)) => condition_delay::<F, N>(&stage, &forces, condition.quantity, &place),
+        Some(Trigger::Condition(condition)) => condition_delay::<F, N>(&phase, &forces, condition.quantity, &place),
         Some(Trigger::After { event, .. }) => delays[event],
     };
     state = from_fn(|i| state[i] + place.rates[i] * delay);
     for record in event_records {
-        state = push::<F, N>(flight, record, delay, &state);
+        state = apply_impulse::<F, N>(flight, record, delay, &state);
     }
     let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
         FlightPath::from_planet_fixed(&F::planet_fixed(&state));
     Ok([delay + end.time, longitude, geocentric_latitude, speed, flight_path_angle].into())
 }
 
-/// A state with its rates at a time, s, where something turns.
+/// A state with its rates at a time, s, at which the motion changes.
 struct Place<'a, const N: usize> {
     time: f64,
     state: [Dual; N],
@@ -285,9 +285,9 @@ impl<const N: usize> Place<'_, N> {
     }
 }
 
-/// How much later a turn comes as the numbers vary; not at all where it comes by the time.
+/// The delay of a change of the motion as the numbers vary, s; zero where it comes at a given time.
 fn turning_delay<F: Formulation<N>, const N: usize>(
-    stage: &Stage,
+    phase: &VariedPhase,
     forces: &Forces<Dual>,
     now: &[&EventRecord],
     next: ModelMode,
@@ -298,24 +298,24 @@ fn turning_delay<F: Formulation<N>, const N: usize>(
     let meets = |Condition { quantity, value, .. }: &Condition| {
         let mut off = place.quantity::<F>(*quantity, forces).value() - *value;
         if *quantity == Quantity::Downrange {
-            let around = TAU * stage.flight.case.planet.equatorial_radius();
+            let around = TAU * phase.flight.case.planet.equatorial_radius();
             off -= around * (off / around).round();
         }
         off.abs() <= ON_VALUE * value.abs().max(1.0)
     };
-    let delay_of = |record: &&EventRecord| match stage.flight.case.events[record.event].when {
+    let delay_of = |record: &&EventRecord| match phase.flight.case.events[record.event].when {
         Trigger::Condition(condition) => {
-            meets(&condition).then(|| condition_delay::<F, N>(stage, forces, condition.quantity, place))
+            meets(&condition).then(|| condition_delay::<F, N>(phase, forces, condition.quantity, place))
         }
         Trigger::After { event, .. } => Some(delays[event]),
     };
     if let Some(delay) = now.iter().find_map(delay_of) {
         return delay;
     }
-    if let Some(change) = stage.next_change_by_time().filter(|change| change.value() <= place.time) {
+    if let Some(change) = phase.next_change_by_time().filter(|change| change.value() <= place.time) {
         return change - change.value();
     }
-    let plain = stage.plain_forces(forces.mode());
+    let plain = phase.plain_forces(forces.mode());
     let values = F::planet_fixed(&place.state.map(Scalar::value));
     let Some(switch) = plain.first_to_turn(next, place.time, &values) else {
         return Dual::from(0.0);
@@ -327,7 +327,7 @@ fn turning_delay<F: Formulation<N>, const N: usize>(
 
 /// How much later a quantity passes the value that it has; not at all where it is the time.
 fn condition_delay<F: Formulation<N>, const N: usize>(
-    stage: &Stage,
+    phase: &VariedPhase,
     forces: &Forces<Dual>,
     quantity: Quantity,
     place: &Place<N>,
@@ -335,7 +335,7 @@ fn condition_delay<F: Formulation<N>, const N: usize>(
     if quantity == Quantity::Time {
         return Dual::from(0.0);
     }
-    let plain = stage.plain_forces(forces.mode());
+    let plain = phase.plain_forces(forces.mode());
     let track = place.track.map(|number| Dual64::from(number.value()));
     let rate = plain.quantity(quantity, &place.moving::<F>(), &track).eps;
     delay(place.quantity::<F>(quantity, forces), rate)
@@ -347,7 +347,7 @@ fn delay(quantity: Dual, rate: f64) -> Dual {
 }
 
 /// The state after the impulse of an event, if it has one.
-fn push<F: Formulation<N>, const N: usize>(
+fn apply_impulse<F: Formulation<N>, const N: usize>(
     flight: &Trajectory,
     record: &EventRecord,
     delay: Dual,
@@ -362,11 +362,11 @@ fn push<F: Formulation<N>, const N: usize>(
     F::coordinates(&PlanetFixed { velocity, ..state }, heat_load)
 }
 
-/// A phase of a flight, in numbers that vary.
-struct Stage<'a> {
+/// A phase of the flight, whose numbers carry derivatives.
+struct VariedPhase<'a> {
     flight: &'a Trajectory,
-    /// The number of the phase.
-    phase: usize,
+    /// Its number: 0 for the first.
+    number: usize,
     parameters: Parameters<Dual>,
     /// When it began, s.
     since: Dual,
@@ -378,13 +378,13 @@ struct Stage<'a> {
     deployed: Vec<Dual>,
 }
 
-impl<'a> Stage<'a> {
+impl<'a> VariedPhase<'a> {
     fn first(flight: &'a Trajectory, parameters: &Parameters<Dual>) -> Self {
         let vehicle = &flight.case.vehicle;
         let mass = if vehicle.is_ballistic() { Dual::from(vehicle.mass) } else { parameters.mass };
         Self {
             flight,
-            phase: 0,
+            number: 0,
             parameters: *parameters,
             since: Dual::from(0.0),
             mass,
@@ -394,7 +394,7 @@ impl<'a> Stage<'a> {
     }
 
     fn as_flown(&self) -> &'a Phase {
-        &self.flight.flown.phases[self.phase]
+        &self.flight.flown.phases[self.number]
     }
 
     fn mass_flow(&self) -> f64 {
@@ -441,22 +441,22 @@ impl<'a> Stage<'a> {
         forces
     }
 
-    /// The stage in a phase to which time alone leads: propellant is spent, canopies begin to fill or are full.
-    fn changed_by_time(self, phase: usize, delay: Dual) -> Self {
-        let mut stage = self;
-        while stage.phase < phase {
-            let next = &stage.flight.flown.phases[stage.phase + 1];
+    /// The phase of a number to which time alone leads: propellant is spent, canopies begin to fill or are full.
+    fn changed_by_time(self, number: usize, delay: Dual) -> Self {
+        let mut phase = self;
+        while phase.number < number {
+            let next = &phase.flight.flown.phases[phase.number + 1];
             let time = delay + next.since;
             let burns_on = next.thrust.is_some();
-            let burnt = if burns_on { stage.burnt(time) } else { stage.propellant.unwrap_or(Dual::from(0.0)) };
-            let propellant = stage.propellant.filter(|_| burns_on).map(|propellant| propellant - burnt);
-            let mass = stage.mass - burnt;
-            stage = Self { phase: stage.phase + 1, since: time, propellant, ..stage.with_mass(mass) };
+            let burnt = if burns_on { phase.burnt(time) } else { phase.propellant.unwrap_or(Dual::from(0.0)) };
+            let propellant = phase.propellant.filter(|_| burns_on).map(|propellant| propellant - burnt);
+            let mass = phase.mass - burnt;
+            phase = Self { number: phase.number + 1, since: time, propellant, ..phase.with_mass(mass) };
         }
-        stage
+        phase
     }
 
-    /// The stage after an event.
+    /// The phase after an event.
     fn after(self, record: &EventRecord, delay: Dual) -> Self {
         let effect = &self.flight.case.events[record.event].then;
         if effect.is_none() {
@@ -473,8 +473,8 @@ impl<'a> Stage<'a> {
         let stays = |(canopy, _): &(&Canopy, &Dual)| !effect.release.contains(&canopy.event);
         let canopies = self.as_flown().canopies.iter().zip(&self.deployed).filter(stays);
         let deployed = canopies.map(|(_, deployed)| *deployed).chain(effect.deploy.map(|_| time)).collect();
-        let phase = record.after.phase;
-        let mut next = Self { phase, since: time, propellant, deployed, ..self.with_mass(mass) };
+        let number = record.after.phase;
+        let mut next = Self { number, since: time, propellant, deployed, ..self.with_mass(mass) };
         let vehicle = &next.as_flown().vehicle;
         let as_flown = self.flight.case.parameters_of(vehicle);
         let ballistic = vehicle.is_ballistic();

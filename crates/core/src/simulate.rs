@@ -1,4 +1,4 @@
-//! The flight: from a scenario to a trajectory.
+//! Propagation of a scenario to its end: the trajectory, or the arrival alone.
 
 mod conditions;
 mod detector;
@@ -37,7 +37,7 @@ pub enum SimulationError {
     Singularity {
         /// The instant reached, s.
         time: f64,
-        /// Which of the singularities.
+        /// The singularity that was reached.
         at: Singularity,
     },
     /// No step that advances the time meets the tolerance.
@@ -60,7 +60,7 @@ pub enum SimulationError {
     Chatter {
         /// The instant reached, s.
         time: f64,
-        /// What switches.
+        /// The model that changes its formula.
         switch: Switch,
     },
     /// The thrust has burnt the vehicle up.

@@ -49,15 +49,15 @@ pub enum Termination {
 /// Where, when and why a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// Why.
+    /// Which condition ended the flight.
     pub termination: Termination,
-    /// When, s.
+    /// The time of the end, s.
     pub time: f64,
-    /// Place and motion then.
+    /// Position and velocity at the end, planet-fixed.
     pub state: PlanetFixed<f64>,
-    /// J/m², where heating was asked for.
+    /// The heat load at the end, J/m²; none without heating.
     pub heat_load: Option<f64>,
-    /// What the integration cost.
+    /// Steps and evaluations of the integration.
     pub statistics: Statistics,
 }
 
@@ -66,9 +66,9 @@ pub struct Arrival {
 pub struct Peak {
     /// The value, in the unit of the quantity.
     pub value: f64,
-    /// When, s.
+    /// The time at which it is reached, s.
     pub time: f64,
-    /// At which altitude along the radius vector, m.
+    /// The altitude along the radius vector there, m.
     pub altitude: f64,
 }
 
@@ -121,7 +121,7 @@ pub enum Warning {
     },
     /// From this time on a table, or a model of a given range, was asked for more than it holds, and gave what it has at its edge.
     OutsideTable {
-        /// Which.
+        /// The table that was asked.
         table: TableId,
         /// s.
         time: f64,
@@ -134,15 +134,15 @@ pub enum Warning {
     },
     /// At the peak of its flux a correlation was asked for more than it was made for.
     OutsideRange {
-        /// Whose.
+        /// The name of the correlation.
         correlation: &'static str,
-        /// What lies outside.
+        /// The quantity that lies outside its range.
         quantity: &'static str,
-        /// Its unit.
+        /// The unit of the quantity.
         unit: &'static str,
-        /// Its value.
+        /// The value of the quantity at the peak.
         value: f64,
-        /// Of the correlation, from and to.
+        /// The least and the greatest value for which the correlation was made.
         range: [f64; 2],
         /// s.
         time: f64,

@@ -74,7 +74,7 @@ impl Aerodynamics {
 }
 
 impl Vehicle {
-    /// The same vehicle with another mass, kg; its coefficients and area stay, and with them `C_D S` where that is told by a ratio to
+    /// The same vehicle with another mass, kg; its coefficients and area stay, and with them `C_D S` where that is given by a ratio to
     /// the mass.
     #[must_use]
     pub fn with_mass(&self, mass: f64) -> Self {
@@ -88,7 +88,7 @@ impl Vehicle {
         Self { mass, aerodynamics, ..*self }
     }
 
-    /// Whether its coefficients are told by ratios.
+    /// Whether it is given by its ballistic coefficient and its lift-to-drag ratio.
     pub(crate) fn is_ballistic(&self) -> bool {
         matches!(self.aerodynamics, Aerodynamics::Ballistic { .. })
     }

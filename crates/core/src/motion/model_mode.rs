@@ -1,4 +1,4 @@
-//! Where the models change their formulas, and on which side of these places a flight is.
+//! The mode of the piecewise models: of each the segment whose formula is in use.
 //!
 //! A step of the integration must not see such a change: an integrator that does grinds its steps down. While a step is taken, the
 //! mode therefore stays what it is, and every formula goes on beyond its own segment; the flight looks for the instant at which it
@@ -50,9 +50,9 @@ pub enum TableId {
     Radiation,
 }
 
-/// By what a formula changes.
+/// The quantity on which the segments of a model depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quantity {
+pub(crate) enum SwitchQuantity {
     /// What a schedule runs along.
     Along(Against),
     /// α, rad.
@@ -95,9 +95,9 @@ impl ModelMode {
     }
 }
 
-impl Quantity {
-    /// So near a boundary a flight counts as on it, and belongs to the side to which it moves: far more than a rounding, far less than
-    /// anybody sees; s, m, m/s, a Mach number or rad.
+impl SwitchQuantity {
+    /// A flight that is nearer to a boundary than this counts as on it, and belongs to the side to which it moves: far more than a rounding
+    /// error, and far less than matters; s, m, m/s, a Mach number or rad.
     pub(crate) fn resolution(self) -> f64 {
         match self {
             Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack => 1e-9,
@@ -123,11 +123,11 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// By what a switch turns, and at which values, ascending; none where it never does.
-    pub(crate) fn boundaries(&self, switch: Switch) -> Option<(Quantity, &[f64])> {
-        const ALTITUDE: Quantity = Quantity::Along(Against::Altitude);
-        const MACH: Quantity = Quantity::Along(Against::Mach);
-        fn along((against, corners): (Against, &[f64])) -> (Quantity, &[f64]) {
-            (Quantity::Along(against), corners)
+    pub(crate) fn boundaries(&self, switch: Switch) -> Option<(SwitchQuantity, &[f64])> {
+        const ALTITUDE: SwitchQuantity = SwitchQuantity::Along(Against::Altitude);
+        const MACH: SwitchQuantity = SwitchQuantity::Along(Against::Mach);
+        fn along((against, corners): (Against, &[f64])) -> (SwitchQuantity, &[f64]) {
+            (SwitchQuantity::Along(against), corners)
         }
         let boundaries = match switch {
             Switch::Atmosphere => Some((ALTITUDE, self.models.atmosphere.boundaries())),
@@ -142,13 +142,15 @@ impl<P: Scalar> Forces<P> {
             },
             Switch::TableAngleOfAttack => match &self.models.aerodynamics {
                 Aerodynamics::AlphaMachTable(table) => {
-                    Some((Quantity::AngleOfAttack, &table.angle_of_attack_range()[..]))
+                    Some((SwitchQuantity::AngleOfAttack, &table.angle_of_attack_range()[..]))
                 }
                 _ => None,
             },
             Switch::BankAngle => self.models.control.bank_angle.corners().map(along),
             Switch::AngleOfAttack => self.models.control.angle_of_attack.corners().map(along),
-            Switch::Radiation => self.models.heating.as_ref().map(|heating| (Quantity::AirSpeed, heating.boundaries())),
+            Switch::Radiation => {
+                self.models.heating.as_ref().map(|heating| (SwitchQuantity::AirSpeed, heating.boundaries()))
+            }
         };
         boundaries.filter(|(_, boundaries)| !boundaries.is_empty())
     }
@@ -165,11 +167,11 @@ impl<P: Scalar> Forces<P> {
         })
     }
 
-    fn quantity_of<S: Over<P>>(&self, quantity: Quantity, time: S, flow: &Flow<S>) -> S {
+    fn quantity_of<S: Over<P>>(&self, quantity: SwitchQuantity, time: S, flow: &Flow<S>) -> S {
         match quantity {
-            Quantity::Along(against) => flow.quantity(against, time),
-            Quantity::AngleOfAttack => self.angle_of_attack(time, flow),
-            Quantity::AirSpeed => flow.directions.speed,
+            SwitchQuantity::Along(against) => flow.quantity(against, time),
+            SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow),
+            SwitchQuantity::AirSpeed => flow.directions.speed,
         }
     }
 }

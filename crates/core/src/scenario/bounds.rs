@@ -15,7 +15,7 @@ use crate::planet::{Gravity, Zonal};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
 
-/// The values that a number may have.
+/// The range of a number: the least and the greatest value that it may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
     /// The least value.
@@ -102,7 +102,7 @@ impl Bound {
         Self { minimum: self.minimum * scale, maximum: self.maximum * scale, ..self }
     }
 
-    /// What is wrong with a value that is none of them, with enough digits to see it.
+    /// The refusal of a value out of bounds, with as many digits as show that it is.
     pub fn refusal(&self, value: f64) -> String {
         let [minimum, maximum, value] = apart([self.minimum, self.maximum, value]);
         format!("must be {}, got {value}", self.between_texts(&minimum, &maximum))
@@ -127,7 +127,7 @@ impl fmt::Display for Bound {
     }
 }
 
-/// Every number of a case that is not one of its values.
+/// The numbers of a case that are out of their bounds.
 pub(super) fn out_of_bounds(case: &Case) -> Vec<Fault> {
     let Case { planet, atmosphere, density_factor, wind, vehicle, control, stop, solver, heating, .. } = case;
     let (equatorial_radius, polar_radius) = planet.shape.semi_axes();

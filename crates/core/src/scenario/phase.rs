@@ -7,7 +7,7 @@ use crate::parachute::{Canopies, Canopy};
 use crate::propulsion::Thrust;
 use crate::vehicle::Vehicle;
 
-/// What flies from an instant on.
+/// A part of the flight between two changes of the vehicle: its mass, thrust and parachutes from an instant on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     /// The instant, s.
@@ -96,7 +96,7 @@ impl Phase {
         Self { since: time, vehicle: self.vehicle.with_mass(self.vehicle.mass - spent), thrust: None, ..self.clone() }
     }
 
-    /// What acts on the vehicle.
+    /// The forces on the vehicle.
     pub fn forces(&self, case: &Case) -> Forces {
         let burn = self.thrust.map(|thrust| Burn {
             along: thrust.along,

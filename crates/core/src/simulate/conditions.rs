@@ -20,7 +20,7 @@ pub(super) struct ConditionDetector {
     watched: Vec<Quantity>,
     /// Of these, with their rates, at the end of the last step; the others are zero.
     last: Readings,
-    /// From which ranges are measured.
+    /// The initial great circle, from which downrange and ground range are measured.
     track: GreatCircle<Dual64>,
     /// The circumference of the sphere on which they are, m.
     around: f64,
@@ -53,9 +53,9 @@ enum Action {
 
 #[derive(Clone, Copy, PartialEq)]
 enum State {
-    /// It waits for another event.
+    /// It waits for another event to happen.
     Dormant,
-    /// It waits.
+    /// It may be met.
     Armed,
     /// It is met at the present instant.
     Due,

@@ -1,4 +1,4 @@
-//! A flight on its way: what its steps mean.
+//! A flight: it takes steps, cuts them where a detector locates a place, and does what happens there.
 
 use std::array::from_fn;
 
@@ -35,7 +35,7 @@ pub(super) struct Flight<'a, F, const N: usize> {
     pub(super) log: Log,
 }
 
-/// What has happened on the way.
+/// The record of a flight: its phases, events and warnings.
 #[derive(Default)]
 pub(super) struct Log {
     /// The phases after the first.
@@ -262,7 +262,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         conditions.look_closely(motion.forces(), |length| later(motion, *time, state, length), foresight)
     }
 
-    /// How far ahead the motion is followed where the rates of an instant do not tell where a quantity goes, s.
+    /// The time over which the motion is followed ahead, s, where the rates at an instant do not decide whether a quantity rises or falls.
     fn foresight(&self) -> f64 {
         let planet = &self.scenario.case().planet;
         let radius = F::planet_fixed(&self.state).position.norm();
@@ -416,7 +416,7 @@ const SINGULAR: f64 = 1e-8;
 const NEARLY_SINGULAR: f64 = 1e-2;
 /// The motion is followed ahead for this part of the time in which an orbit here turns by a radian.
 const FORESIGHT: f64 = 3e-3;
-/// By so much the altitude must change to tell where it goes, m: more than a rounding of the radius.
+/// The change of the altitude from which on its direction is known, m: more than a rounding error of the radius.
 const MOVES: f64 = 1e-6;
 /// An integration under a thrust by the velocity that fails at less than this part of the circular speed fails because of it.
 const NEARLY_AT_REST: f64 = 1e-4;

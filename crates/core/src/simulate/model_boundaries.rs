@@ -6,7 +6,7 @@ use super::detector::Detector;
 use super::step_view::StepView;
 use crate::control::Against;
 use crate::integrate::event;
-use crate::motion::{Forces, Formulation, Quantity, StateRate, Switch};
+use crate::motion::{Forces, Formulation, StateRate, Switch, SwitchQuantity};
 
 /// Detects where a flight leaves the segments on which the present formulas hold.
 ///
@@ -51,7 +51,7 @@ impl BoundaryCrossing {
         forces: &Forces,
     ) -> bool {
         let by_speed =
-            matches!(forces.boundaries(self.switch), Some((Quantity::Along(Against::Speed | Against::Mach), _)));
+            matches!(forces.boundaries(self.switch), Some((SwitchQuantity::Along(Against::Speed | Against::Mach), _)));
         let rate = |of: &ModelBoundaryDetector| self.boundary.inside(of.readings[self.switch as usize]).eps;
         by_speed && rate(before) < 0.0 && rate(after) > 0.0
     }
@@ -104,7 +104,7 @@ impl Detector for ModelBoundaryDetector {
 /// When the next formula changes by time alone, s.
 pub(super) fn next_boundary_in_time(forces: &Forces) -> f64 {
     let corner = |switch| match forces.boundaries(switch) {
-        Some((Quantity::Along(Against::Time), corners)) => corners.get(forces.mode().of(switch)).copied(),
+        Some((SwitchQuantity::Along(Against::Time), corners)) => corners.get(forces.mode().of(switch)).copied(),
         _ => None,
     };
     Switch::ALL.into_iter().filter_map(corner).fold(f64::INFINITY, f64::min)
@@ -114,7 +114,7 @@ pub(super) fn next_boundary_in_time(forces: &Forces) -> f64 {
 fn boundaries_around(forces: &Forces, switch: Switch) -> [Option<Boundary>; 2] {
     let segment = forces.mode().of(switch);
     match forces.boundaries(switch) {
-        None | Some((Quantity::Along(Against::Time), _)) => [None, None],
+        None | Some((SwitchQuantity::Along(Against::Time), _)) => [None, None],
         Some((quantity, boundaries)) => {
             let margin = 2.0 * quantity.resolution();
             let at = |index: usize, side| boundaries.get(index).map(|value| Boundary { value: *value, side, margin });

@@ -14,7 +14,7 @@ use crate::trajectory::{HeatingPeaks, Instant, Peak, Peaks, Warning};
 pub(super) struct PeakTracker {
     loads: Loads<Dual64>,
     /// The number of the phase, and the mode, of the last step.
-    stage: (usize, ModelMode),
+    phase_and_mode: (usize, ModelMode),
     /// Cosine squared of the angle of the flight against the air less that of the cone in which lift fades; none where there is no lift.
     cone: Option<Dual64>,
     faded: bool,
@@ -40,9 +40,10 @@ impl PeakTracker {
         let cone = may_lift.then(|| outside_cone(forces, &start));
         let faded = cone.is_some_and(|cone| cone.re < 0.0);
         let warnings = if faded { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
-        let stage = (0, forces.mode());
+        let phase_and_mode = (0, forces.mode());
         let (peaks_of_phases, peaks_of_flight) = (Vec::new(), peaks);
-        let mut peak_tracker = Self { loads, stage, cone, faded, peaks, peaks_of_phases, peaks_of_flight, warnings };
+        let mut peak_tracker =
+            Self { loads, phase_and_mode, cone, faded, peaks, peaks_of_phases, peaks_of_flight, warnings };
         peak_tracker.warn_outside_tables(forces, 0.0);
         Ok(peak_tracker)
     }
@@ -53,11 +54,11 @@ impl PeakTracker {
         view: &StepView<F, N>,
     ) -> Result<(), SimulationError> {
         let forces = view.motion.forces();
-        let stage = (view.phase, forces.mode());
-        if stage != self.stage {
+        let phase_and_mode = (view.phase, forces.mode());
+        if phase_and_mode != self.phase_and_mode {
             // The loads may jump where a formula changes, and where something happens.
-            let before = std::mem::replace(&mut self.stage, stage);
-            if before.0 == stage.0 {
+            let before = std::mem::replace(&mut self.phase_and_mode, phase_and_mode);
+            if before.0 == phase_and_mode.0 {
                 self.jump(forces, &view.start())?;
             } else {
                 self.end_phase(before.0, forces, view.step.start_time, heat_load(&view.step.start));
@@ -109,8 +110,8 @@ impl PeakTracker {
     /// Ends with the flight, whose last instant may have brought a jump.
     pub(super) fn end(&mut self, forces: &Forces, last: &Instant) -> Result<(), SimulationError> {
         let Instant { time, state, heat_load, phase, .. } = last;
-        if *phase != self.stage.0 {
-            self.end_phase(self.stage.0, forces, *time, *heat_load);
+        if *phase != self.phase_and_mode.0 {
+            self.end_phase(self.phase_and_mode.0, forces, *time, *heat_load);
             let state =
                 PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
             let heat = Dual64::from(heat_load.unwrap_or(0.0));
