@@ -1,11 +1,12 @@
 //! The rules of the house that a compiler does not see: who may know whom, and who may do what.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
 const CORE: [&[&str]; 11] = [
-    &["scalar", "root", "plain", "interrupt"],
+    &["scalar", "root", "number_text", "interrupt"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
     &["event"],
@@ -89,6 +90,78 @@ fn check_layers(src: &str, levels: &[&[&str]]) {
 fn modules_know_only_what_lies_below_them() {
     check_layers("crates/core/src", &CORE);
     check_layers("crates/service/src", &SERVICE);
+}
+
+/// The names that follow `super::` in a text, those in braces included: `a` and `b` of `super::{a::X, b}`.
+fn named_siblings(text: &str) -> BTreeSet<String> {
+    let first_word = |path: &str| path.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    let named = text.split("super::").skip(1).flat_map(|rest| match rest.strip_prefix('{') {
+        None => vec![first_word(rest)],
+        Some(group) => {
+            let mut depth = 0;
+            // What is in inner braces is named by way of what stands before them.
+            let outer: String = group
+                .chars()
+                .take_while(|character| {
+                    depth += i32::from(*character == '{') - i32::from(*character == '}');
+                    depth >= 0
+                })
+                .collect();
+            let mut depth = 0;
+            let is_comma = |character: char| {
+                depth += i32::from(character == '{') - i32::from(character == '}');
+                character == ',' && depth == 0
+            };
+            outer.split(is_comma).map(first_word).collect()
+        }
+    });
+    named.collect()
+}
+
+/// A circle among modules, each of which names those in its set.
+fn circle(names: &BTreeMap<String, BTreeSet<String>>) -> Option<Vec<String>> {
+    let mut left = names.clone();
+    loop {
+        // What names nothing that is left is in no circle.
+        let known: BTreeSet<_> = left.keys().cloned().collect();
+        let before = left.len();
+        left.retain(|_, named| named.iter().any(|name| known.contains(name)));
+        if left.len() == before {
+            return (!left.is_empty()).then(|| left.into_keys().collect());
+        }
+    }
+}
+
+#[test]
+fn neighbours_do_not_name_each_other_in_a_circle() {
+    for src in ["crates/core/src", "crates/service/src"] {
+        let mut folders: BTreeMap<PathBuf, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
+        for (file, text) in sources(src, "rs") {
+            let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+            let code = text.split("#[cfg(test)]").next().unwrap();
+            let mut named = named_siblings(code);
+            named.remove(&name);
+            folders.entry(file.parent().unwrap().to_owned()).or_default().insert(name, named);
+        }
+        // At the top the levels say more.
+        folders.remove(&root().join(src));
+        for (folder, names) in folders {
+            assert_eq!(circle(&names), None, "a circle in {}", folder.display());
+        }
+    }
+}
+
+#[test]
+fn circles_among_neighbours_are_seen() {
+    let named = |text| named_siblings(text).into_iter().collect::<Vec<_>>();
+    assert_eq!(named("use super::warning::Warning; super::Other"), ["Other", "warning"]);
+    assert_eq!(named("use super::{a, b::{self, c}, d::e};\nuse super::f;"), ["a", "b", "d", "f"]);
+    let graph = |edges: &[(&str, &[&str])]| {
+        let set = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
+        circle(&edges.iter().map(|(from, to)| ((*from).to_owned(), set(to))).collect())
+    };
+    assert_eq!(graph(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &["elsewhere"])]), None);
+    assert_eq!(graph(&[("a", &["b"]), ("b", &["c"]), ("c", &["b"])]).unwrap().len(), 3);
 }
 
 #[test]

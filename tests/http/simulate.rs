@@ -1,6 +1,8 @@
 //! `POST /simulate`: defaults, the echo, units of angles, and the digits of numbers.
 
 use axum::http::StatusCode;
+use reentry::Case;
+use reentry_service::wire::scenario::{Job, Wanted};
 use reentry_tests::fuzzed::{is_of_default, without_warnings_of_defaults};
 use reentry_tests::service::Service;
 use serde_json::{Value, json};
@@ -138,6 +140,18 @@ async fn defaults_are_those_of_the_contract() {
     let models = json!({"planet": "earth_wgs84", "shape": "ellipsoid", "atmosphere": "exponential",
         "gravity": "inverse_square", "aerodynamics": "constant", "wind": "still"});
     assert_eq!(answer["models"], models);
+}
+
+#[test]
+fn the_core_has_the_defaults_of_the_contract() {
+    let request = json!({
+        "vehicle": {"mass": 700, "reference_area": 0.2, "aerodynamics": {"type": "constant", "drag_coefficient": 0.2}},
+        "initial_state": {"type": "planet_relative", "altitude": 1e5, "longitude": 1, "geocentric_latitude": 0.5, "speed": 3000,
+            "flight_path_angle": -0.5, "heading": 1},
+    });
+    let job = Job::try_from_tree(request, Wanted::Answer).unwrap();
+    let case = job.scenario.case();
+    assert_eq!(*case, Case::new(case.vehicle.clone(), case.initial_state));
 }
 
 #[tokio::test]

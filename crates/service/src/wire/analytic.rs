@@ -299,7 +299,7 @@ impl AnalyticResponse {
             flight_path_angle: angles.into_iter().map(|angle| angle.map(|angle| unit.from_radians(angle))).collect(),
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
-        let mut warnings = Warning::of(&request, flight, &extras);
+        let mut warnings = Warning::of(&request, flight, extras.unverified);
         if request.control.bank_angle.is_given() {
             warnings.push(Warning::bank_left_out());
         }

@@ -239,7 +239,7 @@ impl SimulateResponse {
         let known = request.known();
         let row = |point| Row::new(point, unit, known);
         let statistics = flight.statistics();
-        let warnings = Warning::of(&request, flight, &extras);
+        let warnings = Warning::of(&request, flight, extras.unverified);
         let report = |EventPoint { event, before, after }| EventReport {
             index: event,
             name: request.events[event].name.clone(),

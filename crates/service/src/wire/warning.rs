@@ -3,6 +3,7 @@
 use reentry::coordinates::UndefinedElements;
 use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use reentry::number_text::{NumberText, apart, rounded};
+use reentry::simulate::SimulationError;
 use reentry::trajectory::{self, TableId, Trajectory};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -12,7 +13,6 @@ use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
 use super::scenario::SimulateRequest;
 use super::state::{Frame, State};
-use super::trajectory::Extras;
 use super::vehicle::Aerodynamics;
 use super::{Angle, AngleUnit};
 
@@ -34,8 +34,8 @@ impl Warning {
         Self { code, detail: detail.to_owned(), time: None }
     }
 
-    /// What there is to know of a flight and of the request for it.
-    pub fn of(request: &SimulateRequest, flight: &Trajectory, extras: &Extras) -> Vec<Self> {
+    /// What there is to know of a flight and of the request for it; with the reason for which it could not be verified, if it was to be.
+    pub fn of(request: &SimulateRequest, flight: &Trajectory, unverified: Option<SimulationError>) -> Vec<Self> {
         let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
         warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
@@ -49,7 +49,7 @@ impl Warning {
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
         warnings.extend(Self::of_frame(&request.initial_state, request.epoch, &request.planet));
-        if let Some(error) = extras.unverified {
+        if let Some(error) = unverified {
             let detail = format!("Verification failed: at a hundredth of its tolerance, {error}");
             warnings.push(Self::new("not_verified", &detail));
         }
