@@ -103,7 +103,9 @@ def test_a_client_holds_half_of_what_bodies_may_take(start):
 
 
 def test_readers_who_do_not_read_hold_no_slot_of_a_batch(start):
-    service = start(*PROXY, "--batches", "4", "--deadline", "300", "--batch-deadline", "300", "--idle", "300")
+    # Of 512 MiB what they are behind would be so much that they are hurried.
+    memory = ("--memory", str(2 << 30))
+    service = start(*PROXY, *memory, "--batches", "4", "--deadline", "300", "--batch-deadline", "300", "--idle", "300")
     body = json.dumps([ROWS] * 20).encode()
     with closing([]) as readers:
         for number in range(8):

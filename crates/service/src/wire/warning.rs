@@ -288,7 +288,7 @@ fn seconds(time: f64) -> String {
 /// The longest flight, s, that a tolerance keeps within 1 m: two hours with the default one, and longer with a finer one.
 ///
 /// Measured on decays from circular orbits in `us76`: 1e-10 gives 1 m after 3 hours, 10 m after 3 days and 700 m after 20; 1e-12 0.04 m
-/// after 3 days and 1.3 m after 11; 1e-13 0.3 m after 20. `tests/verification.rs` holds flights to it.
+/// after 3 days and 1.3 m after 11; 1e-13 0.3 m after 20. `tests/core/verification.rs` holds flights to it.
 pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
     const BY_DEFAULT: [f64; 2] = [7200.0, 1e-10];
     let [longest, default] = BY_DEFAULT;

@@ -122,7 +122,7 @@ describe.each(Object.entries(CASES))('%s', (name, typed) => {
     expect(error).toBeUndefined();
     if (!data) throw new Error('no answer');
     const { termination, final_state: impact, peaks } = expected[model];
-    // A metre is what the API promises, and the rest follows of it; peaks as in `tests/reference.rs`.
+    // A metre is what the API promises, and the rest follows of it; peaks as in `tests/http/reference.rs`.
     expect(data.termination).toBe(termination);
     expect(apart(data.final_state, impact)).toBeLessThan(1);
     expect(Math.abs(data.final_state.time - impact.time)).toBeLessThan(1 / impact.speed);

@@ -7,7 +7,7 @@ use reentry_service::error::ApiError;
 use reentry_service::format::Format;
 use serde_json::{Value, json};
 
-use crate::http::requests::{capsule, with, with_all};
+use super::requests::{capsule, with, with_all};
 
 /// The limit of the service, bytes.
 const BODY_LIMIT: usize = 1 << 20;

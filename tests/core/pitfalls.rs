@@ -11,7 +11,7 @@ use reentry::trajectory::{Sampling, Termination, Warning};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Scenario, Solver, Stop, Wind, simulate};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
+use crate::core::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
 fn starting(case: Case, state: FlightPath<f64>) -> Case {
     Case { initial_state: state.to_planet_fixed(), ..case }

@@ -223,19 +223,28 @@ fn is_ignored(lines: &str, path: &str) -> bool {
     lines.lines().filter(|line| !line.starts_with('#')).filter_map(of_line).next_back().unwrap_or(false)
 }
 
-/// A newcomer is led by the files that these name.
 /// A file of tests that no program takes in would pass whatever it says.
 #[test]
 fn every_file_of_tests_is_in_a_program() {
-    let read = |file: &str| fs::read_to_string(root().join("tests").join(file)).unwrap();
-    let programs = ["main.rs", "lib.rs", "http.rs", "overload.rs", "Cargo.toml", "fuzz/Cargo.toml"].map(read).concat();
+    let read = |path: &Path| fs::read_to_string(path).unwrap();
+    let manifests = ["tests/Cargo.toml", "tests/fuzz/Cargo.toml"].map(|file| read(&root().join(file))).concat();
     for (path, _) in sources("tests", "rs") {
-        let stem = path.file_stem().unwrap().to_str().unwrap();
-        let taken = [format!("mod {stem};"), format!("path = \"{stem}.rs\"")];
-        assert!(taken.iter().any(|name| programs.contains(name)), "{} is in no program", path.display());
+        let [name, stem] = [path.file_name(), path.file_stem()].map(|name| name.unwrap().to_str().unwrap());
+        let folder = path.parent().unwrap();
+        // A file is a program of a manifest, or a module of the file that stands for its folder, which `mod.rs` itself is to the one above.
+        let (name, above) = match name {
+            "mod.rs" => (folder.file_name().unwrap().to_str().unwrap(), folder.parent().unwrap()),
+            _ => (stem, folder),
+        };
+        let parents = ["mod.rs", "main.rs", "lib.rs"].map(|parent| above.join(parent));
+        let is_module = |parent: &PathBuf| parent.exists() && read(parent).contains(&format!("mod {name};"));
+        let file = format!("/{stem}.rs\"");
+        let is_program = [file.clone(), file.replacen('/', "\"", 1)].iter().any(|file| manifests.contains(file));
+        assert!(parents.iter().any(is_module) || is_program, "{} is in no program", path.display());
     }
 }
 
+/// A newcomer is led by the files that these name.
 #[test]
 fn every_path_that_the_documents_name_exists() {
     let mut named = 0;

@@ -8,7 +8,7 @@ use reentry::trajectory::{FlightPoint, HeatingPeaks, Sampling, Warning};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, miss, spherical, target_2, vehicle, with_tolerance};
+use crate::core::flights::{fly, miss, spherical, target_2, vehicle, with_tolerance};
 
 /// 1 BTU/(ft² s), W/m²: 1055.06 J over 0.3048² m².
 const BTU: f64 = 1_055.055_852_62 / (0.3048 * 0.3048);

@@ -14,8 +14,8 @@ use reentry::verification::verify;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Stop, Vehicle, Wind};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, miss, spherical, target_2, vehicle, with_tolerance};
-use crate::propulsion::{at, switch_on};
+use crate::core::flights::{fly, miss, spherical, target_2, vehicle, with_tolerance};
+use crate::core::propulsion::{at, switch_on};
 
 /// A capsule of 1500 kg, which falls at 40° through the air of the thesis.
 fn capsule() -> Case {

@@ -11,7 +11,7 @@ use reentry::trajectory::{TableId, Warning};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, target_2, vehicle};
+use crate::core::flights::{fly, target_2, vehicle};
 
 /// Carbon dioxide with some nitrogen and argon, as at Mars: kg/mol, and the ratio of its heat capacities.
 const MARS: (f64, f64) = (0.044_01, 1.29);

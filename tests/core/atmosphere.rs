@@ -8,7 +8,7 @@ use reentry::scalar::{Lanes, Scalar};
 use reentry_service::validation::cases::{US76, US76_GEOPOTENTIAL, rows};
 
 use crate::check::{near, relative};
-use crate::flights::config;
+use crate::core::flights::config;
 
 /// r₀, m, of the standard.
 const RADIUS: f64 = 6_356_766.0;

@@ -83,7 +83,7 @@ fn a_validation_for_which_nobody_waits_ends() {
 #[test]
 fn the_readme_has_the_validation() {
     let markdown = validation().to_markdown();
-    assert!(include_str!("../README.md").contains(&markdown), "out of date: run `make validation`\n{markdown}");
+    assert!(include_str!("../../README.md").contains(&markdown), "out of date: run `make validation`\n{markdown}");
 }
 
 #[test]

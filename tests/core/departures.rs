@@ -15,7 +15,7 @@ use reentry::trajectory::Termination;
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory};
 
 use crate::check::{near, relative};
-use crate::flights::{config, fly, in_vacuum, random_entry, target_2, try_to_fly, vehicle, with_tolerance};
+use crate::core::flights::{config, fly, in_vacuum, random_entry, target_2, try_to_fly, vehicle, with_tolerance};
 
 fn rises(quantity: Quantity, value: f64) -> Condition {
     Condition { quantity, value, direction: Direction::Rising }

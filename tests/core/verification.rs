@@ -11,7 +11,7 @@ use reentry::verification::{Verification, verify};
 use reentry::{Atmosphere, Case, FlightPath, Planet, Scenario, Solver, Stop};
 
 use crate::check::{near, relative};
-use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, vehicle, with_tolerance};
+use crate::core::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, vehicle, with_tolerance};
 
 fn verified(case: &Case) -> Verification {
     verify(&Scenario::new(case.clone()).unwrap(), &fly(case), &AtomicBool::new(false)).unwrap()

@@ -14,7 +14,7 @@ use reentry::vehicle::{Aerodynamics, AlphaMachTable, MachTable, Vehicle};
 use reentry::wind::WindTable;
 
 use crate::check::{near, relative};
-use crate::flights::config;
+use crate::core::flights::config;
 
 /// Rounding, in parts of the greatest entry.
 const ROUNDING: f64 = 1e-13;

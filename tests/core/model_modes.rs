@@ -16,7 +16,7 @@ use reentry::wind::WindTable;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};
 
 use crate::check::near;
-use crate::flights::{config, fly, miss, random_entry, spherical, target_2, try_to_fly, vehicle, with_tolerance};
+use crate::core::flights::{config, fly, miss, random_entry, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
 fn schedule(against: Against, at: &[f64], value: &[f64], interpolation: Interpolation) -> Command {
     Command::Schedule(Arc::new(Schedule::new(against, at, value, interpolation).unwrap()))

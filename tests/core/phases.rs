@@ -8,7 +8,7 @@ use reentry::trajectory::{FlightPhase, FlightPoint, Peak, PhaseStart};
 use reentry::{Aerodynamics, Case, Stop, Trajectory, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{capsule, fly, spherical};
+use crate::core::flights::{capsule, fly, spherical};
 
 fn falls(quantity: Quantity, value: f64) -> Trigger {
     Condition { quantity, value, direction: Direction::Falling }.into()

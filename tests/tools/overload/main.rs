@@ -30,15 +30,10 @@ use flood::{Connections, flood};
 use health::{Health, recover};
 use mix::{Kind, SHORT, Tally, draw, kinds};
 
-#[path = "overload/attacks.rs"]
 mod attacks;
-#[path = "overload/bars.rs"]
 mod bars;
-#[path = "overload/flood.rs"]
 mod flood;
-#[path = "overload/health.rs"]
 mod health;
-#[path = "overload/mix.rs"]
 mod mix;
 
 /// Connections that ask in turn while the capacity is measured: they keep the workers busy, and were all batches, none

@@ -13,7 +13,7 @@ use reentry::trajectory::Sampling;
 use reentry::{Case, FlightPath, Planet, Stop, Trajectory, Wind};
 
 use crate::check::{near, relative};
-use crate::flights::{fly, in_vacuum, spherical, target_2, vehicle, with_tolerance};
+use crate::core::flights::{fly, in_vacuum, spherical, target_2, vehicle, with_tolerance};
 
 const EQUATORIAL_RADIUS: f64 = 6_378_137.0;
 

@@ -8,7 +8,7 @@ use reentry::motion::{Cartesian, Spherical};
 use reentry::scalar::Scalar;
 
 use crate::check::{near, relative};
-use crate::flights::target_2;
+use crate::core::flights::target_2;
 
 /// The plane Kepler problem with eccentricity 0.5 from periapsis: period 2π, energy -1/2.
 struct Kepler;

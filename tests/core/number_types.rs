@@ -18,7 +18,7 @@ use reentry::trajectory::Termination;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Scenario, Stop, Trajectory, Vehicle, simulate};
 
 use crate::check::near;
-use crate::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
+use crate::core::flights::{config, fly, in_vacuum, random_entry, spherical, target_2, vehicle, with_tolerance};
 
 /// A vehicle and its state.
 type Member = (Parameters<f64>, FlightPath<f64>);

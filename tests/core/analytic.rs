@@ -9,7 +9,7 @@ use reentry::trajectory::{FlightPoint, Sampling, Termination};
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Scenario, Stop, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{config, fly, in_vacuum, random_entry, target_2, vehicle};
+use crate::core::flights::{config, fly, in_vacuum, random_entry, target_2, vehicle};
 
 const ALL: [Solution; 5] =
     [Solution::ShallowGlide, Solution::Loh, Solution::SteepGlide, Solution::SteepBallistic, Solution::MediumGlide];

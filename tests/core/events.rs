@@ -12,7 +12,7 @@ use reentry::trajectory::{EventPoint, FlightPoint, Sampling, Termination};
 use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Stop, Trajectory, Vehicle};
 
 use crate::check::{near, relative};
-use crate::flights::{capsule, fly, in_vacuum, miss, spherical, target_2, vehicle, with_tolerance};
+use crate::core::flights::{capsule, fly, in_vacuum, miss, spherical, target_2, vehicle, with_tolerance};
 
 fn falls(quantity: Quantity, value: f64) -> Condition {
     Condition { quantity, value, direction: Direction::Falling }

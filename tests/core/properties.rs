@@ -11,7 +11,7 @@ use reentry::trajectory::Sampling;
 use reentry::{Aerodynamics, Case, Control, Planet, Stop, Trajectory, Vehicle};
 
 use crate::check::{angle, near, relative};
-use crate::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
+use crate::core::flights::{config, fly, in_vacuum, miss, random_entry, spherical, target_2, with_tolerance};
 
 /// V²/2 - ω²r²cos²φ/2 - g₀r₀²/r: constant where nothing but gravity acts (Jameson 2006, equations 29 to 31 integrated once).
 fn jacobi_integral(case: &Case, state: &FlightPath<f64>) -> f64 {

@@ -7,7 +7,7 @@ use reentry::Planet;
 use reentry::planet::{Gravity, Zonal};
 
 use crate::check::near;
-use crate::flights::config;
+use crate::core::flights::config;
 
 fn zonal(degree: usize) -> Planet {
     Planet { gravity: Gravity::Zonal(Zonal::EARTH.up_to(degree)), ..Planet::EARTH_WGS84 }

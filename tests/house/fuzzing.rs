@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use reentry_tests::fuzzed;
 use reentry_tests::mutation::{LETTERS, Mutator, corpus};
 
-use crate::flights::config;
+use crate::core::flights::config;
 
 #[test]
 fn the_parser_holds_on_its_corpus() {

@@ -15,7 +15,7 @@ use reentry::{
 };
 
 use crate::check::{near, relative};
-use crate::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
+use crate::core::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
 const THRUST: Thrust =
     Thrust { along: Axis::Velocity, force: -20_000.0, specific_impulse: Some(300.0), propellant: None };

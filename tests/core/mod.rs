@@ -1,0 +1,23 @@
+//! The physics of the core: each test against something independent.
+
+pub(crate) mod flights;
+
+mod analytic;
+mod atmosphere;
+mod conversions;
+mod departures;
+mod events;
+mod gas;
+mod gravity;
+mod ground_track;
+mod heating;
+mod integrator;
+mod model_modes;
+mod number_types;
+mod parachutes;
+mod phases;
+mod pitfalls;
+mod properties;
+mod propulsion;
+mod tables;
+mod verification;

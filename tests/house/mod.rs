@@ -1,0 +1,6 @@
+//! The rules of the house: what the source, the committed document, the built-in reference cases and the fuzz corpus must hold to.
+
+mod fuzzing;
+mod openapi;
+mod tidy;
+mod validation;
