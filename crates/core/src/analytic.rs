@@ -32,11 +32,11 @@ pub enum Solution {
     ShallowGlide,
     /// Loh's second-order solution for the flight-path angle, with the speed of the simulated flight: equation 80.
     Loh,
-    /// A steep stop_altitude on which lift and drag outweigh all else: equations 81 to 83.
+    /// A steep descent on which lift and drag outweigh all else: equations 81 to 83.
     SteepGlide,
-    /// A stop_altitude without lift at a constant angle: equations 84 to 87.
+    /// A descent without lift at a constant angle: equations 84 to 87.
     SteepBallistic,
-    /// Wang and Ting's stop_altitude at a moderate angle, from more than circular speed: equations 88 to 90.
+    /// Wang and Ting's descent at a moderate angle, from more than circular speed: equations 88 to 90.
     MediumGlide,
 }
 
@@ -134,7 +134,7 @@ pub enum Fault {
     #[error("the flight begins so high that the air has no density: the theory is of flight through air")]
     NoAirAtEntry,
     /// The flight does not descend at first.
-    #[error("the flight-path angle must be less than 0: the theory is of a stop_altitude")]
+    #[error("the flight-path angle must be less than 0: the theory is of a descent")]
     NoDescent {
         /// `γ_e`, rad.
         flight_path_angle: f64,
@@ -173,7 +173,7 @@ impl Solution {
         of_vehicle.into_iter().chain([of_air, of_factor]).flatten().collect()
     }
 
-    /// Whether the theory is of a stop_altitude, and ends with it.
+    /// Whether the theory is of a descent, and ends with it.
     fn descends(self) -> bool {
         matches!(self, Self::SteepGlide | Self::SteepBallistic | Self::MediumGlide)
     }

@@ -1,4 +1,4 @@
-//! A theory along a whole flight: its predictions, and the segment over which it holds.
+//! A theory along a whole flight: its predictions, and the part over which it holds.
 
 use super::{End, Prediction, Theory};
 use crate::interrupt::Interrupt;
@@ -20,9 +20,9 @@ pub struct Comparison {
     pub validity: Validity,
 }
 
-/// The segment of a flight, in time order, outside which a theory gives no numbers.
+/// The part of a flight, in time order, outside which a theory gives no numbers.
 ///
-/// A theory of a stop_altitude ends where it first gives none. The others hang on the altitude alone, or on altitude and speed:
+/// A theory of a descent ends where it first gives none. The others hang on the altitude alone, or on altitude and speed:
 /// they end where they last give numbers, and may have gaps before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Validity {

@@ -27,7 +27,7 @@ impl Theory {
         Ok(Prediction::of(speed_squared, gamma, beta * eta * speed_squared))
     }
 
-    /// Loh's unified theory, second order: the angle of a stop_altitude, with the simulated speed.
+    /// Loh's unified theory, second order: the angle of a descent, with the simulated speed.
     ///
     /// # Reference
     /// Jameson 2006, equation 80, "Shallow, Gliding Entry".
@@ -120,7 +120,7 @@ impl Prediction {
     }
 }
 
-/// The flight-path angle of a stop_altitude, in [-π/2, 0], with the cosine that an equation gives.
+/// The flight-path angle of a descent, in [-π/2, 0], with the cosine that an equation gives.
 fn descending(cos_gamma: f64, equation: u8) -> Result<f64, End> {
     match cos_gamma {
         cos_gamma if cos_gamma > 1.0 => Err(End::Level(equation)),

@@ -215,7 +215,7 @@ pub struct Differences {
     pub drag_deceleration: Vec<Option<f64>>,
 }
 
-/// The segment of the flight, in time order, outside which the theory gives no number.
+/// The part of the flight, in time order, outside which the theory gives no number.
 ///
 /// The steep and medium solutions end where they first give none; `shallow_glide` and `loh` where they last give one, with gaps
 /// before, maybe.
