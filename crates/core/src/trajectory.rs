@@ -1,4 +1,4 @@
-//! The answer: how the flight ended, its peak_tracker, and its state at any time.
+//! The answer: how the flight ended, its peaks, and its state at any time.
 
 mod ground_track;
 mod phases;

@@ -1,4 +1,4 @@
-//! The peak_tracker of the flight: its peaks, and what its user should be warned of.
+//! The peaks of the flight, and what its user should be warned of.
 
 use num_dual::Dual64;
 
