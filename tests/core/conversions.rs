@@ -13,7 +13,7 @@ use reentry::coordinates::{
 };
 use reentry::planet::Shape;
 use reentry_service::validation::cases::{EARTH_ROTATION, ELEMENTS, GEODETIC, rows};
-use reentry_service::wire::epoch::Instant;
+use reentry_service::wire::epoch::Epoch;
 
 use crate::check::{angle, near, relative};
 
@@ -175,7 +175,7 @@ fn the_earth_is_turned_as_erfa_turns_it() {
     let mut worst = [0.0_f64; 3];
     for row in rows {
         let (utc, row) = (row[0], numbers(&row[1..]));
-        let days = Instant::read(&serde_json::json!(utc)).unwrap().days();
+        let days = Epoch::read(&serde_json::json!(utc)).unwrap().days();
         near(utc, days, row[0], 1e-11);
         angle(utc, greenwich_mean_sidereal_time(days), row[1], 1e-10);
 
@@ -203,7 +203,7 @@ fn the_earth_is_turned_as_erfa_turns_it() {
 /// GCRF, Vallado, Fundamentals of Astrodynamics and Applications, 4th ed. 2013, example 3-14. Its UT1 is 0.4399619 s behind UTC.
 #[test]
 fn a_published_satellite_is_where_it_was() {
-    let utc = Instant::read(&serde_json::json!("2004-04-06T07:51:28.386009Z")).unwrap();
+    let utc = Epoch::read(&serde_json::json!("2004-04-06T07:51:28.386009Z")).unwrap();
     let ut1 = utc.days() - 0.439_961_9 / 86_400.0;
     let kilometres = |x: f64, y: f64, z: f64| Vector3::new(x, y, z) * 1e3;
     let teme = Inertial {

@@ -9,7 +9,7 @@ use proptest::test_runner::TestRunner;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
 use reentry::heating::{Convective, Heating, Radiative};
-use reentry::propulsion::{Axis, Impulse, Thrust};
+use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::sensitivity::sensitivities;
 use reentry::trajectory::Termination;
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory};
@@ -128,7 +128,7 @@ fn on_a_circle_no_rounding_of_the_altitude_is_a_crossing() {
 #[test]
 fn an_impulse_of_the_start_decides_where_the_altitude_goes() {
     for (speed_change, goes) in [(20.0, 1), (-20.0, 2)] {
-        let then = Effect { impulse: Some(Impulse { along: Axis::Radial, speed_change }), ..Effect::default() };
+        let then = Effect { impulse: Some(Impulse { along: ThrustAxis::Radial, speed_change }), ..Effect::default() };
         let events = vec![
             event(rises(Quantity::Time, 0.0), then),
             mark(rises(Quantity::Altitude, 3000.0)),
@@ -145,7 +145,7 @@ fn pad() -> Case {
 }
 
 fn ignition(force: f64) -> Effect {
-    let thrust = Thrust { along: Axis::Radial, force, specific_impulse: Some(250.0), propellant: Some(40.0) };
+    let thrust = Thrust { along: ThrustAxis::Radial, force, specific_impulse: Some(250.0), propellant: Some(40.0) };
     Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
 }
 
@@ -178,15 +178,15 @@ fn a_thrust_of_the_start_lifts_a_vehicle_off_its_pad() {
 
 #[test]
 fn an_impulse_from_rest_on_the_ground_throws_it_up() {
-    let throw = |along: Axis, speed_change: f64| {
+    let throw = |along: ThrustAxis, speed_change: f64| {
         let then = Effect { impulse: Some(Impulse { along, speed_change }), ..Effect::default() };
         fly(&Case { events: vec![event(rises(Quantity::Time, 0.0), then)], ..pad() })
     };
-    let flight = throw(Axis::Radial, 100.0);
+    let flight = throw(ThrustAxis::Radial, 100.0);
     // By the same independent integration at a latitude of 28.6°, which changes gravity by less than these.
     near("end", flight.end_time(), 11.612, 2e-3);
     near("speed", flight.last().flight_path.speed, 37.191, 2e-3);
-    for down in [throw(Axis::Radial, -100.0), throw(Axis::Velocity, 100.0)] {
+    for down in [throw(ThrustAxis::Radial, -100.0), throw(ThrustAxis::Velocity, 100.0)] {
         assert_eq!((down.end_time(), down.termination()), (0.0, Termination::SurfaceImpact));
     }
 }
@@ -286,7 +286,7 @@ fn derivatives_pass_through_a_condition_on_the_heat_load() {
 /// The mass falls along a straight line of time while the engine burns.
 #[test]
 fn a_condition_on_the_mass_ends_a_burn() {
-    let thrust = Thrust { along: Axis::Velocity, force: -2e4, specific_impulse: Some(300.0), propellant: None };
+    let thrust = Thrust { along: ThrustAxis::Velocity, force: -2e4, specific_impulse: Some(300.0), propellant: None };
     let events = vec![
         event(rises(Quantity::Time, 5.0), Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }),
         event(falls(Quantity::Mass, 650.0), Effect { engine: Some(Engine::Off), ..Effect::default() }),

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use reentry::coordinates::{Inertial, OrbitalElements};
 use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
 use reentry::heating::{Convective, Heating, Radiative};
-use reentry::propulsion::{Axis, Impulse};
+use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{Fault, ScenarioError};
 use reentry::simulate::{arrival, arrivals};
 use reentry::trajectory::{EventPoint, FlightPoint, Sampling, Termination};
@@ -26,7 +26,7 @@ fn mark(when: Condition) -> Event {
     Event { when: when.into(), then: Effect::default() }
 }
 
-fn push(along: Axis, speed_change: f64) -> Effect {
+fn push(along: ThrustAxis, speed_change: f64) -> Effect {
     Effect { impulse: Some(Impulse { along, speed_change }), ..Effect::default() }
 }
 
@@ -296,9 +296,9 @@ fn what_holds_at_the_start_must_come_back_first() {
 fn an_event_happens_once_whatever_its_effect_does() {
     // Each undoes its condition, and those of the others.
     let list = vec![
-        Event { when: falls(Quantity::Speed, 2500.0).into(), then: push(Axis::Velocity, 200.0) },
-        Event { when: rises(Quantity::Speed, 2600.0).into(), then: push(Axis::Velocity, -200.0) },
-        Event { when: falls(Quantity::Speed, 2000.0).into(), then: push(Axis::Radial, 2000.0) },
+        Event { when: falls(Quantity::Speed, 2500.0).into(), then: push(ThrustAxis::Velocity, 200.0) },
+        Event { when: rises(Quantity::Speed, 2600.0).into(), then: push(ThrustAxis::Velocity, -200.0) },
+        Event { when: falls(Quantity::Speed, 2000.0).into(), then: push(ThrustAxis::Radial, 2000.0) },
     ];
     for case in [skip(), spherical(skip())] {
         let flight = fly(&Case { events: list.clone(), ..case });
@@ -347,7 +347,7 @@ fn a_flight_ends_at_its_ceiling_and_at_its_conditions() {
     near("apex", level.last().loads.altitude, apex, 1e-3);
     // What happens at the end happens, and the end sees it; the end comes all the same.
     let stop = rises(Quantity::Time, 10.0);
-    let pushed = with(None, vec![stop], vec![Event { when: stop.into(), then: push(Axis::Velocity, 500.0) }]);
+    let pushed = with(None, vec![stop], vec![Event { when: stop.into(), then: push(ThrustAxis::Velocity, 500.0) }]);
     assert_eq!((pushed.termination(), events(&pushed).len()), (Termination::Condition(0), 1));
     let [event] = events(&pushed)[..] else { unreachable!() };
     assert_eq!(pushed.last().flight_path.speed.to_bits(), event.after.flight_path.speed.to_bits());
@@ -424,7 +424,7 @@ fn faults_of_events_name_their_place() {
             then: Effect {
                 mass: Some(0.0),
                 reference_area: Some(-1.0),
-                impulse: Some(Impulse { along: Axis::Radial, speed_change: 2e6 }),
+                impulse: Some(Impulse { along: ThrustAxis::Radial, speed_change: 2e6 }),
                 ..Effect::default()
             },
         },

@@ -8,7 +8,7 @@ use reentry::coordinates::{GreatCircle, OrbitShape, OrbitalElements};
 use reentry::event::{Condition, Direction, Effect, Event, Quantity};
 use reentry::integrate::{Integrator, Limits, StepBounds, System};
 use reentry::motion::Cartesian;
-use reentry::propulsion::{Axis, Impulse};
+use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::trajectory::Sampling;
 use reentry::{Case, FlightPath, Planet, Stop, Trajectory, Wind};
 
@@ -36,7 +36,7 @@ fn at(time: f64, then: Effect) -> Event {
     Event { when: when.into(), then }
 }
 
-fn push(along: Axis, speed_change: f64) -> Effect {
+fn push(along: ThrustAxis, speed_change: f64) -> Effect {
     Effect { impulse: Some(Impulse { along, speed_change }), ..Effect::default() }
 }
 
@@ -246,9 +246,9 @@ fn past_the_pole_of_the_great_circle_the_side_decides() {
         let start = level(radius, f64::abs(eastwards), 0.0);
         let north = (speed * speed - eastwards * eastwards).sqrt();
         let events = if eastwards > 0.0 {
-            vec![at(0.0, push(Axis::Normal, north))]
+            vec![at(0.0, push(ThrustAxis::Normal, north))]
         } else {
-            vec![at(0.0, push(Axis::Velocity, 2.0 * eastwards)), at(0.0, push(Axis::Normal, -north))]
+            vec![at(0.0, push(ThrustAxis::Velocity, 2.0 * eastwards)), at(0.0, push(ThrustAxis::Normal, -north))]
         };
         let case = Case { events, ..orbit(start, planet, 1.1 * period) };
         for case in [case.clone(), with_tolerance(case, 1e-4)] {
@@ -269,7 +269,7 @@ fn a_flight_that_turns_round_goes_back() {
     let radius = EQUATORIAL_RADIUS + 500e3;
     let rate = (planet.gravitational_parameter / radius.powi(3)).sqrt();
     let [ahead, back] = [rate - planet.rotation_rate, rate + planet.rotation_rate];
-    let turn_round = at(7000.0, push(Axis::Velocity, -(ahead + back) * radius));
+    let turn_round = at(7000.0, push(ThrustAxis::Velocity, -(ahead + back) * radius));
     let flight = fly(&Case { events: vec![turn_round], ..orbit(level(radius, ahead * radius, 0.0), planet, 20_000.0) });
     let [there, returned] = [ahead * 7000.0, back * 13_000.0].map(|angle| angle * EQUATORIAL_RADIUS);
     near("downrange", flight.last().downrange.unwrap(), there - returned, 1e-9 * (there + returned));

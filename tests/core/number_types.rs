@@ -10,7 +10,7 @@ use reentry::heating::{Convective, Heating, Radiative};
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
 use reentry::parachute::Parachute;
-use reentry::propulsion::{Axis, Impulse, Thrust};
+use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::scalar::{Lanes, Scalar};
 use reentry::sensitivity::{self, Gradient, Sensitivities};
 use reentry::simulate::{arrival, arrivals};
@@ -285,7 +285,7 @@ fn sensitivities_hold_across_events() {
         Effect { deploy: Some(parachute), ..Effect::default() }
     };
     let releases = |parachute| Effect { release: vec![parachute], ..Effect::default() };
-    let inertial = Axis::inertial([1.0, -2.0, 0.7]).unwrap();
+    let inertial = ThrustAxis::inertial([1.0, -2.0, 0.7]).unwrap();
     for (what, events) in [
         (
             "a vehicle that opens by dynamic pressure",
@@ -297,15 +297,18 @@ fn sensitivities_hold_across_events() {
         ),
         (
             "an impulse by speed",
-            event(Condition { direction: Direction::Rising, ..when(Quantity::Speed, 3250.0) }, pushed(Axis::Velocity)),
+            event(
+                Condition { direction: Direction::Rising, ..when(Quantity::Speed, 3250.0) },
+                pushed(ThrustAxis::Velocity),
+            ),
         ),
-        ("an impulse across", event(altitude(40e3), pushed(Axis::Normal))),
-        ("an impulse by the angle", event(when(Quantity::FlightPathAngle, -0.6), pushed(Axis::Radial))),
-        ("a burn to its end", event(altitude(60e3), burns(Axis::Velocity, Some(80.0)))),
+        ("an impulse across", event(altitude(40e3), pushed(ThrustAxis::Normal))),
+        ("an impulse by the angle", event(when(Quantity::FlightPathAngle, -0.6), pushed(ThrustAxis::Radial))),
+        ("a burn to its end", event(altitude(60e3), burns(ThrustAxis::Velocity, Some(80.0)))),
         ("an inertial impulse", event(altitude(40e3), pushed(inertial))),
-        ("a level impulse", event(altitude(40e3), pushed(Axis::Horizontal))),
+        ("a level impulse", event(altitude(40e3), pushed(ThrustAxis::Horizontal))),
         ("a burn in inertial space", event(altitude(60e3), burns(inertial, Some(80.0)))),
-        ("a level burn", event(altitude(60e3), burns(Axis::Horizontal, Some(80.0)))),
+        ("a level burn", event(altitude(60e3), burns(ThrustAxis::Horizontal, Some(80.0)))),
         (
             "a parachute that opens at once",
             event(
@@ -318,7 +321,7 @@ fn sensitivities_hold_across_events() {
             "parachutes that follow each other, and a mass that changes as one fills, and burns",
             vec![
                 Event { when: altitude(70e3).into(), then: deploys(0.2, 12.0, 0.0) },
-                Event { when: altitude(62e3).into(), then: burns(Axis::Velocity, Some(40.0)) },
+                Event { when: altitude(62e3).into(), then: burns(ThrustAxis::Velocity, Some(40.0)) },
                 Event { when: altitude(58e3).into(), then: lighter.clone() },
                 Event { when: altitude(30e3).into(), then: Effect { release: vec![0], ..deploys(0.5, 5.0, 1.0) } },
                 Event { when: altitude(9e3).into(), then: releases(3) },
@@ -329,7 +332,7 @@ fn sensitivities_hold_across_events() {
             vec![
                 Event {
                     when: Condition { direction: Direction::Rising, ..when(Quantity::Time, 20.0) }.into(),
-                    then: burns(Axis::Radial, None),
+                    then: burns(ThrustAxis::Radial, None),
                 },
                 Event { when: altitude(30e3).into(), then: lighter },
                 Event { when: altitude(20e3).into(), then: off },

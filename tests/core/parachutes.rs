@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use reentry::coordinates::Inertial;
 use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
 use reentry::parachute::Parachute;
-use reentry::propulsion::{Axis, STANDARD_GRAVITY, Thrust};
+use reentry::propulsion::{STANDARD_GRAVITY, Thrust, ThrustAxis};
 use reentry::scenario::{Bound, Fault, ScenarioError};
 use reentry::trajectory::Warning;
 use reentry::vehicle::MachTable;
@@ -205,7 +205,7 @@ fn a_full_parachute_is_a_greater_drag_area() {
 #[test]
 fn a_parachute_adds_to_every_kind_of_aerodynamics() {
     let thrust =
-        Thrust { along: Axis::Velocity, force: -4000.0, specific_impulse: Some(200.0), propellant: Some(10.0) };
+        Thrust { along: ThrustAxis::Velocity, force: -4000.0, specific_impulse: Some(200.0), propellant: Some(10.0) };
     let events = vec![
         at(2.0, deploy(Parachute { inflation_time: 4.0, ..DROGUE })),
         at(3.0, switch_on(thrust)),
@@ -338,7 +338,7 @@ fn faults_of_parachutes_name_their_place() {
             && unknown.len() == 2,
         "{unknown:?}"
     );
-    let thrust = Thrust { along: Axis::Radial, force: 1.0, specific_impulse: None, propellant: Some(1.0) };
+    let thrust = Thrust { along: ThrustAxis::Radial, force: 1.0, specific_impulse: None, propellant: Some(1.0) };
     let unburnt = faults(vec![at(1.0, switch_on(thrust))]);
     assert!(
         matches!(&unburnt[..], [Fault::PropellantUnused { field }] if field == "events.0.then.engine.propellant"),

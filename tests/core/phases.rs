@@ -3,7 +3,7 @@
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
 use reentry::heating::{Convective, Heating, Radiative};
 use reentry::parachute::Parachute;
-use reentry::propulsion::{Axis, Impulse, Thrust};
+use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::trajectory::{FlightPhase, FlightPoint, Peak, PhaseStart};
 use reentry::{Aerodynamics, Case, Stop, Trajectory, Vehicle};
 
@@ -28,11 +28,11 @@ fn parachute() -> Effect {
 }
 
 fn impulse(speed_change: f64) -> Effect {
-    Effect { impulse: Some(Impulse { along: Axis::Velocity, speed_change }), ..Effect::default() }
+    Effect { impulse: Some(Impulse { along: ThrustAxis::Velocity, speed_change }), ..Effect::default() }
 }
 
 fn thrust(force: f64, propellant: Option<f64>) -> Effect {
-    let thrust = Thrust { along: Axis::Velocity, force, specific_impulse: Some(300.0), propellant };
+    let thrust = Thrust { along: ThrustAxis::Velocity, force, specific_impulse: Some(300.0), propellant };
     Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
 }
 

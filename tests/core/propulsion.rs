@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use reentry::coordinates::{Inertial, OrbitalElements};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
 use reentry::planet::Shape;
-use reentry::propulsion::{Axis, Impulse, STANDARD_GRAVITY, Thrust};
+use reentry::propulsion::{Impulse, STANDARD_GRAVITY, Thrust, ThrustAxis};
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{Termination, Warning};
 use reentry::verification::verify;
@@ -18,7 +18,7 @@ use crate::check::{near, relative};
 use crate::core::flights::{fly, in_vacuum, miss, spherical, target_2, try_to_fly, vehicle, with_tolerance};
 
 const THRUST: Thrust =
-    Thrust { along: Axis::Velocity, force: -20_000.0, specific_impulse: Some(300.0), propellant: None };
+    Thrust { along: ThrustAxis::Velocity, force: -20_000.0, specific_impulse: Some(300.0), propellant: None };
 
 pub(crate) fn at(time: f64, then: Effect) -> Event {
     let when = Condition { quantity: Quantity::Time, value: time, direction: Direction::Rising };
@@ -33,7 +33,7 @@ pub(crate) fn switch_off() -> Effect {
     Effect { engine: Some(Engine::Off), ..Effect::default() }
 }
 
-fn push(along: Axis, speed_change: f64) -> Effect {
+fn push(along: ThrustAxis, speed_change: f64) -> Effect {
     Effect { impulse: Some(Impulse { along, speed_change }), ..Effect::default() }
 }
 
@@ -74,10 +74,10 @@ fn elements(case: &Case, state: &PlanetFixed<f64>) -> OrbitalElements {
 #[test]
 fn thrust_changes_the_speed_by_the_rocket_equation() {
     let seconds = 500.0;
-    for (along, direction) in [(Axis::Velocity, 1.0), (Axis::Velocity, -1.0), (Axis::Radial, 1.0)] {
+    for (along, direction) in [(ThrustAxis::Velocity, 1.0), (ThrustAxis::Velocity, -1.0), (ThrustAxis::Radial, 1.0)] {
         let thrust = Thrust { along, force: direction * 20_000.0, ..THRUST };
         let mut case = empty_space();
-        if along == Axis::Radial {
+        if along == ThrustAxis::Radial {
             let rising = FlightPath {
                 flight_path_angle: std::f64::consts::FRAC_PI_2,
                 ..FlightPath::from_planet_fixed(&case.initial_state)
@@ -106,7 +106,7 @@ fn thrust_changes_the_speed_by_the_rocket_equation() {
 #[test]
 fn thrust_across_the_velocity_turns_it_to_the_left() {
     let start = FlightPath { radius: 1e12, ..FlightPath::from_planet_fixed(&orbit().initial_state) };
-    let thrust = Thrust { along: Axis::Normal, force: 20_000.0, ..THRUST };
+    let thrust = Thrust { along: ThrustAxis::Normal, force: 20_000.0, ..THRUST };
     let case =
         Case { initial_state: start.to_planet_fixed(), events: vec![at(0.0, switch_on(thrust))], ..empty_space() };
     let (first, last) = (fly(&case).initial(), fly(&case).last());
@@ -116,8 +116,14 @@ fn thrust_across_the_velocity_turns_it_to_the_left() {
     near("heading", last.flight_path.heading - first.flight_path.heading, change / first.flight_path.speed, 1e-5);
 }
 
-fn every_axis() -> [Axis; 5] {
-    [Axis::Velocity, Axis::Radial, Axis::Normal, Axis::Horizontal, Axis::inertial([3.0, -2.0, 1.5]).unwrap()]
+fn every_axis() -> [ThrustAxis; 5] {
+    [
+        ThrustAxis::Velocity,
+        ThrustAxis::Radial,
+        ThrustAxis::Normal,
+        ThrustAxis::Horizontal,
+        ThrustAxis::inertial([3.0, -2.0, 1.5]).unwrap(),
+    ]
 }
 
 /// Runge and Kutta's fourth-order method in inertial space, with the mass as a seventh number.
@@ -133,15 +139,15 @@ fn inertial_flight(case: &Case, thrust: Thrust, end: f64) -> (Vector3<f64>, f64)
         let drag =
             relative * (-0.5 * density * relative.norm() * case.vehicle.reference_area * drag_coefficient / mass);
         let direction = match thrust.along {
-            Axis::Velocity => relative.normalize(),
-            Axis::Radial => position.normalize(),
-            Axis::Normal => position.cross(&relative).normalize(),
-            Axis::Horizontal => {
+            ThrustAxis::Velocity => relative.normalize(),
+            ThrustAxis::Radial => position.normalize(),
+            ThrustAxis::Normal => position.cross(&relative).normalize(),
+            ThrustAxis::Horizontal => {
                 let up = position.normalize();
                 (relative - up * up.dot(&relative)).normalize()
             }
             // The frames are aligned at the start.
-            Axis::Inertial(direction) => *direction,
+            ThrustAxis::Inertial(direction) => *direction,
         };
         [velocity, gravity + drag + direction * (thrust.force / mass)]
     };
@@ -226,9 +232,9 @@ fn energy_is_balanced_under_thrust_and_impulses() {
         assert!(verification.distance < 1.0, "{along:?}: {verification:?}");
         let works = verification.thrust_work;
         match along {
-            Axis::Velocity | Axis::Horizontal => assert!(works < -1e5, "{along:?}: {works}"),
-            Axis::Radial | Axis::Normal => assert!(works.abs() < 2e5, "{along:?}: {works}"),
-            Axis::Inertial(_) => assert!(works.abs() > 1e4, "{along:?}: {works}"),
+            ThrustAxis::Velocity | ThrustAxis::Horizontal => assert!(works < -1e5, "{along:?}: {works}"),
+            ThrustAxis::Radial | ThrustAxis::Normal => assert!(works.abs() < 2e5, "{along:?}: {works}"),
+            ThrustAxis::Inertial(_) => assert!(works.abs() > 1e4, "{along:?}: {works}"),
         }
         assert!(miss(&fly(&case), &fly(&spherical(case.clone()))) < 0.1, "{along:?}");
     }
@@ -246,13 +252,13 @@ fn impulses_change_the_orbit_as_the_textbooks_say() {
     };
     let (radius, mu): (f64, f64) = (6_678_137.0, orbit().planet.gravitational_parameter);
     let circular = (mu / radius).sqrt();
-    let (retro, event) = after(push(Axis::Velocity, -100.0));
+    let (retro, event) = after(push(ThrustAxis::Velocity, -100.0));
     let semi_major_axis = 1.0 / (2.0 / radius - (circular - 100.0).powi(2) / mu);
     relative("semi-major axis", retro.semi_latus_rectum() / (1.0 - retro.eccentricity.powi(2)), semi_major_axis, 1e-10);
     near("the burn is at the apoapsis", retro.true_anomaly, std::f64::consts::PI, 1e-6);
     near("speed", event.after.flight_path.speed - event.before.flight_path.speed, -100.0, 1e-9);
     assert_eq!(event.after.mass.to_bits(), event.before.mass.to_bits());
-    let (tilted, event) = after(push(Axis::Normal, 200.0));
+    let (tilted, event) = after(push(ThrustAxis::Normal, 200.0));
     relative(
         "speed",
         tilted.semi_latus_rectum(),
@@ -261,7 +267,7 @@ fn impulses_change_the_orbit_as_the_textbooks_say() {
     );
     let turn = event.after.flight_path.heading - event.before.flight_path.heading;
     near("turned to the left", turn, (200.0 / circular).atan(), 1e-9);
-    let (_, event) = after(push(Axis::Radial, 30.0));
+    let (_, event) = after(push(ThrustAxis::Radial, 30.0));
     near("climb", event.after.flight_path.flight_path_angle, (30.0 / circular).atan(), 1e-9);
 }
 
@@ -329,11 +335,11 @@ fn an_impulse_without_a_direction_does_nothing_and_says_so() {
     let still = FlightPath { speed: 0.0, ..FlightPath::from_planet_fixed(&orbit().initial_state) };
     let down = FlightPath { speed: 100.0, flight_path_angle: -std::f64::consts::FRAC_PI_2, ..still };
     for (start, along) in [
-        (still, Axis::Velocity),
-        (still, Axis::Normal),
-        (still, Axis::Horizontal),
-        (down, Axis::Normal),
-        (down, Axis::Horizontal),
+        (still, ThrustAxis::Velocity),
+        (still, ThrustAxis::Normal),
+        (still, ThrustAxis::Horizontal),
+        (down, ThrustAxis::Normal),
+        (down, ThrustAxis::Horizontal),
     ] {
         let plain = Case { initial_state: start.to_planet_fixed(), ..orbit() };
         let pushed = fly(&Case { events: vec![at(0.0, push(along, 10.0))], ..plain.clone() });
@@ -346,7 +352,7 @@ fn an_impulse_without_a_direction_does_nothing_and_says_so() {
     }
     let outward = fly(&Case {
         initial_state: still.to_planet_fixed(),
-        events: vec![at(0.0, push(Axis::Radial, 10.0))],
+        events: vec![at(0.0, push(ThrustAxis::Radial, 10.0))],
         ..orbit()
     });
     assert!(outward.warnings().is_empty());
@@ -380,7 +386,7 @@ fn lander(speed: f64, flight_path_angle: f64) -> Case {
 
 const MOON: f64 = 1_737_400.0;
 const BRAKE: Thrust =
-    Thrust { along: Axis::Velocity, force: -45_000.0, specific_impulse: Some(311.0), propellant: None };
+    Thrust { along: ThrustAxis::Velocity, force: -45_000.0, specific_impulse: Some(311.0), propellant: None };
 
 /// A lander that a braking thrust, at once, brings to rest: when, and how high above the start; by Runge and Kutta's fourth-order method,
 /// with steps of a hundredth of the time to rest.
@@ -513,7 +519,7 @@ fn a_burn_that_passes_near_rest_goes_on() {
 /// The level part of the velocity is braked away, in vertical flight the thrust fades, and the vehicle falls on.
 #[test]
 fn a_level_burn_fades_in_vertical_flight_and_the_flight_goes_on() {
-    let brake = Thrust { along: Axis::Horizontal, ..BRAKE };
+    let brake = Thrust { along: ThrustAxis::Horizontal, ..BRAKE };
     for rotation_rate in [0.0, 2.66e-6] {
         for flight_path_angle in [0.3, 0.0, -0.5] {
             let plain = lander(50.0, flight_path_angle);
@@ -559,7 +565,7 @@ fn a_thrust_from_rest_says_that_it_has_no_direction_yet() {
     near("at once", time, 0.0, 0.0);
     near("altitude", altitude, 1000.0, 1e-6);
     // Upward there is a direction at rest, and in inertial space.
-    for along in [Axis::Radial, Axis::inertial([0.0, 0.0, 1.0]).unwrap()] {
+    for along in [ThrustAxis::Radial, ThrustAxis::inertial([0.0, 0.0, 1.0]).unwrap()] {
         let stop = Stop { time: 5.0, ..Stop::default() };
         let events = vec![at(0.0, switch_on(Thrust { along, ..ahead }))];
         assert!(fly(&Case { events, stop, ..still.clone() }).warnings().is_empty());
@@ -571,7 +577,7 @@ fn a_thrust_from_rest_says_that_it_has_no_direction_yet() {
 fn an_inertial_impulse_changes_the_inertial_velocity() {
     let planet = Planet::EARTH_WGS84.spherical();
     let direction = Vector3::new(1.0, -2.0, 0.5);
-    let along = Axis::inertial(direction.into()).unwrap();
+    let along = ThrustAxis::inertial(direction.into()).unwrap();
     let case = Case { planet, events: vec![at(300.0, push(along, 80.0))], ..orbit() };
     let flight = fly(&case);
     let event = flight.events().next().unwrap();
@@ -580,9 +586,9 @@ fn an_inertial_impulse_changes_the_inertial_velocity() {
     assert!((after - before - direction.normalize() * 80.0).norm() < 1e-8, "{}", after - before);
     // On axes that are turned from the inertial ones, the same direction has other components.
     let to_others = nalgebra::Rotation3::from_euler_angles(0.3, -1.2, 0.4);
-    let Axis::Inertial(rotated) = along.rotated_by(&to_others) else { unreachable!() };
+    let ThrustAxis::Inertial(rotated) = along.rotated_by(&to_others) else { unreachable!() };
     assert!((to_others.inverse() * rotated.into_inner() - direction.normalize()).norm() < 1e-15);
-    assert_eq!(Axis::Normal.rotated_by(&to_others), Axis::Normal);
+    assert_eq!(ThrustAxis::Normal.rotated_by(&to_others), ThrustAxis::Normal);
 }
 
 /// A ballistic coefficient is of the mass: as it burns, the drag area stays.
@@ -611,9 +617,9 @@ fn a_ballistic_vehicle_burns_like_the_same_with_coefficients() {
 #[test]
 fn thrust_out_of_orbit_meets_the_atmosphere() {
     for (along, force, propellant) in [
-        (Axis::Velocity, -6000.0, Some(900.0)),
-        (Axis::Velocity, -20_000.0, Some(2000.0)),
-        (Axis::Radial, -20_000.0, Some(1500.0)),
+        (ThrustAxis::Velocity, -6000.0, Some(900.0)),
+        (ThrustAxis::Velocity, -20_000.0, Some(2000.0)),
+        (ThrustAxis::Radial, -20_000.0, Some(1500.0)),
     ] {
         let case = Case {
             planet: Planet::EARTH_WGS84,

@@ -30,6 +30,7 @@ async fn every_optional_field_may_be_left_out() {
 async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got() {
     let steady = Steady::new().await;
     for field in fields() {
+        let mut last = Value::Null;
         for value in field.kind.mistyped() {
             let request = with(&field.request, &field.pointer, value.clone());
             let got = match &value {
@@ -54,10 +55,11 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::Instant => "must be an RFC 3339 time",
                 Kind::SiderealTime => "must be a number of seconds or \"HH:MM:SS.s\"",
             };
-            let at = field.pointer.as_str();
-            steady.refused_at(field.path, &request, &[(at, expected)]).await;
-            steady.refused_at(field.path, &request, &[(at, got)]).await;
+            let problem = steady.faults_at(field.path, &request, &[(field.pointer.as_str(), expected)]).await;
+            assert!(problem["errors"][0]["detail"].as_str().unwrap().contains(got), "no {got:?} in {problem}");
+            last = problem;
         }
+        steady.is_as_before(&last).await;
     }
 }
 

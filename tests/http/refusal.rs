@@ -70,22 +70,30 @@ impl Steady {
 
     /// Sends a request that must be refused, and gives the problem document.
     pub(crate) async fn refused(&self, request: Request<Body>) -> Value {
-        let answer = self.service.send(request).await;
-        let problem = problem(&answer);
-        assert_eq!(good_answers(&self.service).await, self.before, "good requests after {problem}");
+        let problem = problem(&self.service.send(request).await);
+        self.is_as_before(&problem).await;
         problem
+    }
+
+    /// Fails unless good requests have the same answers as before what was refused.
+    pub(crate) async fn is_as_before(&self, problem: &Value) {
+        assert_eq!(good_answers(&self.service).await, self.before, "good requests after {problem}");
     }
 
     /// Posts a text that must be refused.
     pub(crate) async fn refused_text(&self, path: &str, body: impl Into<Body>) -> Value {
-        let request = Request::builder().method(Method::POST).uri(path);
-        let request = request.header(header::CONTENT_TYPE, "application/json");
-        self.refused(request.body(body.into()).unwrap()).await
+        self.refused(post(path, body)).await
     }
 
     /// Posts a case that must be refused for faults at exactly these pointers, in any order; each detail has the phrase beside it.
     pub(crate) async fn refused_at(&self, path: &str, body: &Value, expected: &[(&str, &str)]) {
-        let problem = self.refused_text(path, body.to_string()).await;
+        let problem = self.faults_at(path, body, expected).await;
+        self.is_as_before(&problem).await;
+    }
+
+    /// The same without a look at good requests afterwards.
+    pub(crate) async fn faults_at(&self, path: &str, body: &Value, expected: &[(&str, &str)]) -> Value {
+        let problem = problem(&self.service.send(post(path, body.to_string())).await);
         assert_eq!(problem["type"], "/problems/invalid-case", "{problem} for {body}");
         let errors = problem["errors"].as_array().unwrap();
         let mut pointers: Vec<_> = errors.iter().map(|error| error["pointer"].as_str().unwrap()).collect();
@@ -98,7 +106,14 @@ impl Steady {
                 |error: &&Value| error["pointer"] == *pointer && error["detail"].as_str().unwrap().contains(phrase);
             assert!(errors.iter().any(|error| says(&error)), "no {phrase:?} at {pointer} in {problem} for {body}");
         }
+        problem
     }
+}
+
+/// A request with a body of JSON.
+fn post(path: &str, body: impl Into<Body>) -> Request<Body> {
+    let request = Request::builder().method(Method::POST).uri(path);
+    request.header(header::CONTENT_TYPE, "application/json").body(body.into()).unwrap()
 }
 
 /// The problem document of an answer, which must be one.

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use reentry_service::wire::epoch::Instant;
+use reentry_service::wire::epoch::Epoch;
 use serde_json::json;
 
 use crate::check::near;
@@ -70,8 +70,8 @@ fn offset(minutes: i32) -> String {
     format!("{sign}{:02}:{:02}", minutes.abs() / 60, minutes.abs() % 60)
 }
 
-fn read(text: &str) -> Result<Instant, String> {
-    Instant::read(&json!(text))
+fn read(text: &str) -> Result<Epoch, String> {
+    Epoch::read(&json!(text))
 }
 
 /// The instant, as it is written back.

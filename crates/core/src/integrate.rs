@@ -84,7 +84,7 @@ pub struct Limits<'a> {
 /// Every call is given the system, which may change from one step to the next; then comes [`restart`](Self::restart).
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize> {
-    control: Control<'a, N>,
+    control: StepControl<'a, N>,
     state: [f64; N],
     derivative: [f64; N],
 }
@@ -93,7 +93,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// Starts at t = 0 with the given state.
     pub fn new<F: StepBounds<N>>(system: &F, state: [f64; N], limits: Limits<'a>) -> Self {
         let derivative = system.derivative(0.0, &state);
-        let mut control = Control::new(system, &state, &derivative, limits);
+        let mut control = StepControl::new(system, &state, &derivative, limits);
         control.shorten(system.longest_step(0.0, &state));
         Self { control, state, derivative }
     }
@@ -215,7 +215,7 @@ fn packed<F, const N: usize, const L: usize>(
 
 /// The control of the length of the steps: each as long as the tolerance allows.
 #[derive(Debug)]
-struct Control<'a, const N: usize> {
+struct StepControl<'a, const N: usize> {
     limits: Limits<'a>,
     magnitudes: [f64; N],
     /// Of the last accepted step's end, s.
@@ -229,7 +229,7 @@ struct Control<'a, const N: usize> {
     statistics: Statistics,
 }
 
-impl<'a, const N: usize> Control<'a, N> {
+impl<'a, const N: usize> StepControl<'a, N> {
     fn new<F: StepBounds<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
         let magnitudes = system.magnitudes();
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };

@@ -27,7 +27,7 @@ use crate::integrate::StepBounds;
 use crate::interpolation::Hint;
 use crate::parachute::Canopies;
 use crate::planet::{Gravity, Planet};
-use crate::propulsion::Axis;
+use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
@@ -121,7 +121,7 @@ pub struct Parameters<P> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Burn<P> {
     /// The direction of the thrust.
-    pub along: Axis,
+    pub along: ThrustAxis,
     /// The instant of that mass, s.
     pub since: P,
     /// The thrust over that mass, m/s².
@@ -608,26 +608,31 @@ impl Forces {
 /// A direction in a state at a time, s, of length 1; of length 0 where there is none, and shorter than 1 near the vertical where there is
 /// none in vertical flight.
 #[inline(always)]
-pub(crate) fn along<S: Scalar>(axis: Axis, planet: &Planet, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+pub(crate) fn along<S: Scalar>(axis: ThrustAxis, planet: &Planet, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
     let Directions { up, ahead, left, cos_gamma, .. } = Directions::of(&state.position, &state.velocity);
     match axis {
-        Axis::Velocity => ahead,
-        Axis::Radial => up,
-        Axis::Normal => left * lift_fade_over_cosine(cos_gamma),
-        Axis::Horizontal => left.cross(&up) * lift_fade_over_cosine(cos_gamma),
-        Axis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
+        ThrustAxis::Velocity => ahead,
+        ThrustAxis::Radial => up,
+        ThrustAxis::Normal => left * lift_fade_over_cosine(cos_gamma),
+        ThrustAxis::Horizontal => left.cross(&up) * lift_fade_over_cosine(cos_gamma),
+        ThrustAxis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
     }
 }
 
 /// A direction in a state at a time, s, of length 1, if there is one.
-pub(crate) fn direction(axis: Axis, planet: &Planet, time: f64, state: &PlanetFixed<f64>) -> Option<Vector3<f64>> {
+pub(crate) fn direction(
+    axis: ThrustAxis,
+    planet: &Planet,
+    time: f64,
+    state: &PlanetFixed<f64>,
+) -> Option<Vector3<f64>> {
     let Directions { up, ahead, left, .. } = Directions::of(&state.position, &state.velocity);
     match axis {
-        Axis::Velocity => ahead,
-        Axis::Radial => up,
-        Axis::Normal => left,
-        Axis::Horizontal => left.cross(&up),
-        Axis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
+        ThrustAxis::Velocity => ahead,
+        ThrustAxis::Radial => up,
+        ThrustAxis::Normal => left,
+        ThrustAxis::Horizontal => left.cross(&up),
+        ThrustAxis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
     }
     .try_normalize(NO_DIRECTION)
 }

@@ -7,7 +7,7 @@ pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// A direction in which a vehicle is pushed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Axis {
+pub enum ThrustAxis {
     /// v̂, along the velocity relative to the rotating planet; none at rest.
     Velocity,
     /// r̂, away from the planet's centre.
@@ -22,16 +22,16 @@ pub enum Axis {
     Inertial(UnitVector3<f64>),
 }
 
-impl Axis {
+impl ThrustAxis {
     /// The inertial direction of a vector of any length, in planet-fixed components at t = 0; none of the zero vector.
     ///
     /// # Examples
     /// ```
-    /// use reentry::propulsion::Axis;
+    /// use reentry::propulsion::ThrustAxis;
     ///
-    /// let Some(Axis::Inertial(direction)) = Axis::inertial([3e200, 0.0, 4e200]) else { panic!("it has a direction") };
+    /// let Some(ThrustAxis::Inertial(direction)) = ThrustAxis::inertial([3e200, 0.0, 4e200]) else { panic!("it has a direction") };
     /// assert!((direction.x - 0.6).abs() < 1e-15 && (direction.z - 0.8).abs() < 1e-15);
-    /// assert_eq!(Axis::inertial([0.0; 3]), None);
+    /// assert_eq!(ThrustAxis::inertial([0.0; 3]), None);
     /// ```
     pub fn inertial(components: [f64; 3]) -> Option<Self> {
         let components = Vector3::from(components);
@@ -59,7 +59,7 @@ impl Axis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impulse {
     /// Where to; the direction is that of the velocity before.
-    pub along: Axis,
+    pub along: ThrustAxis,
     /// By how much, m/s; negative against the direction.
     pub speed_change: f64,
 }
@@ -68,7 +68,7 @@ pub struct Impulse {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thrust {
     /// Where to, at every instant.
-    pub along: Axis,
+    pub along: ThrustAxis,
     /// N; negative against the direction.
     pub force: f64,
     /// The impulse that a unit of propellant's weight at standard gravity gives, s; without a number, the mass stays.
@@ -89,11 +89,11 @@ impl Thrust {
     ///
     /// # Examples
     /// ```
-    /// use reentry::propulsion::{Axis, Thrust};
+    /// use reentry::propulsion::{ThrustAxis, Thrust};
     ///
     /// // An exhaust of 3 km/s: a kilogram a second gives 3 kN.
     /// let specific_impulse = Some(3000.0 / 9.806_65);
-    /// let thrust = Thrust { along: Axis::Velocity, force: -3000.0, specific_impulse, propellant: None };
+    /// let thrust = Thrust { along: ThrustAxis::Velocity, force: -3000.0, specific_impulse, propellant: None };
     /// assert!((thrust.mass_flow() - 1.0).abs() < 1e-15);
     /// ```
     pub fn mass_flow(&self) -> f64 {

@@ -17,7 +17,7 @@ use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{Equations, Phase, Scenario};
 use crate::trajectory::{Arrival, Flown, StepOfEither, StoredStep, Trajectory};
-use flight::{Flight, Log};
+use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
 
@@ -176,7 +176,7 @@ fn record<F: Formulation<N>, const N: usize>(
     let end = flight.instant();
     peak_tracker.end(flight.motion.forces(), &end)?;
     let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
-    let Log { mut phases, event_records, warnings: others } = flight.log;
+    let FlightLog { mut phases, event_records, warnings: others } = flight.log;
     phases.insert(0, Phase::first(case));
     warnings.extend(others);
     Ok(Trajectory::new(

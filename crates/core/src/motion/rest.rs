@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Burn, Forces};
 use crate::coordinates::PlanetFixed;
-use crate::propulsion::Axis;
+use crate::propulsion::ThrustAxis;
 use crate::scalar::length;
 
 /// So small a part of the circular speed is rest: less than the steps resolve.
@@ -22,15 +22,15 @@ impl Forces {
     /// Whether the thrust has no direction at rest.
     pub(crate) fn thrusts_by_velocity(&self) -> bool {
         self.burn.as_ref().is_some_and(|burn| match burn.along {
-            Axis::Velocity | Axis::Horizontal | Axis::Normal => true,
-            Axis::Radial | Axis::Inertial(_) => false,
+            ThrustAxis::Velocity | ThrustAxis::Horizontal | ThrustAxis::Normal => true,
+            ThrustAxis::Radial | ThrustAxis::Inertial(_) => false,
         })
     }
 
     /// Whether a vehicle that the thrust brings to rest here stays at rest: the thrust acts against the velocity, and is as great as all
     /// other forces together on the vehicle at rest, so that it stops every motion as it begins.
     pub(crate) fn brakes_to_rest(&self, time: f64, state: &PlanetFixed<f64>) -> bool {
-        let brakes = |burn: &&Burn<f64>| burn.along == Axis::Velocity && burn.acceleration < 0.0;
+        let brakes = |burn: &&Burn<f64>| burn.along == ThrustAxis::Velocity && burn.acceleration < 0.0;
         self.burn.as_ref().filter(brakes).is_some_and(|burn| {
             let still = PlanetFixed { velocity: Vector3::zeros(), ..*state };
             self.acceleration(time, &still).norm() <= -burn.acceleration * burn.mass_ratio(time)

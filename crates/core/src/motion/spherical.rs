@@ -7,7 +7,7 @@ use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without
 use crate::coordinates::{FlightPath, PlanetFixed};
 use crate::integrate::{StepBounds, System};
 use crate::planet::Pull;
-use crate::propulsion::Axis;
+use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar};
 
 /// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
@@ -167,14 +167,14 @@ impl<P: Scalar> Spherical<P> {
         let Velocity { sin_gamma, cos_gamma, .. } = *velocity;
         let faded_over_cos_gamma = || acceleration * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
         Some(match burn.along {
-            Axis::Velocity => [acceleration, S::zero(), S::zero()],
-            Axis::Radial => [acceleration * sin_gamma, acceleration * cos_gamma, S::zero()],
-            Axis::Normal => [S::zero(), S::zero(), faded_over_cos_gamma()],
-            Axis::Horizontal => {
+            ThrustAxis::Velocity => [acceleration, S::zero(), S::zero()],
+            ThrustAxis::Radial => [acceleration * sin_gamma, acceleration * cos_gamma, S::zero()],
+            ThrustAxis::Normal => [S::zero(), S::zero(), faded_over_cos_gamma()],
+            ThrustAxis::Horizontal => {
                 let level = faded_over_cos_gamma() * cos_gamma;
                 [level * cos_gamma, -(level * sin_gamma), S::zero()]
             }
-            Axis::Inertial(direction) => {
+            ThrustAxis::Inertial(direction) => {
                 // Outward from the axis, east, and along it.
                 let angle = time * self.0.models.planet.rotation_rate + place.longitude;
                 let [outward, east, axial]: [S; 3] = turned(&direction, angle).into();

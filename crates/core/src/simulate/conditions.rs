@@ -39,7 +39,7 @@ struct PendingCondition {
     /// The event for which it waits, and the delay after it, s.
     waits_for: Option<(usize, f64)>,
     action: Action,
-    state: State,
+    state: Status,
 }
 
 /// What follows when a condition is met.
@@ -52,7 +52,7 @@ enum Action {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum State {
+enum Status {
     /// It waits for another event to happen.
     Dormant,
     /// It may be met.
@@ -67,8 +67,8 @@ impl PendingCondition {
     fn new(trigger: Trigger, action: Action) -> Self {
         let at = |value| Condition { quantity: Quantity::Time, value, direction: Direction::Rising };
         let (condition, waits_for, state) = match trigger {
-            Trigger::Condition(condition) => (condition, None, State::Armed),
-            Trigger::After { event, delay } => (at(f64::INFINITY), Some((event, delay)), State::Dormant),
+            Trigger::Condition(condition) => (condition, None, Status::Armed),
+            Trigger::After { event, delay } => (at(f64::INFINITY), Some((event, delay)), Status::Dormant),
         };
         Self { condition, margin: 0.0, waits_for, action, state }
     }
@@ -164,20 +164,20 @@ impl ConditionDetector {
 
     /// The condition that was found to be met at the present instant is.
     pub(super) fn meet(&mut self, index: usize) {
-        self.all[index].state = State::Due;
+        self.all[index].state = Status::Due;
     }
 
     /// Finds all that are met at the present instant by the time, or by a jump from the near side or from the value.
     pub(super) fn look(&mut self, forces: &Forces, now: &StateRate) {
         let next = self.read(forces, now);
         let last = std::mem::replace(&mut self.last, next);
-        for pending in self.all.iter_mut().filter(|pending| pending.state == State::Armed) {
+        for pending in self.all.iter_mut().filter(|pending| pending.state == Status::Armed) {
             let resolution = pending.condition.resolution();
             let [last, next] = [last, next].map(|quantities| pending.before_among(&quantities).re);
             let jumped = last > resolution && next <= resolution || last >= -resolution && next < -resolution;
             let is_time = pending.condition.quantity == Quantity::Time && next <= resolution;
             if jumped || is_time {
-                pending.state = State::Due;
+                pending.state = Status::Due;
             }
         }
     }
@@ -206,7 +206,7 @@ impl ConditionDetector {
                 // To the last, what is far more than a rounding decides.
                 let resolution = pending.condition.resolution() * if is_last { 1e-3 } else { 1.0 };
                 if change < -resolution {
-                    pending.state = State::Due;
+                    pending.state = Status::Due;
                     found = true;
                 } else {
                     pending.margin = 2.0 * pending.condition.resolution();
@@ -220,8 +220,8 @@ impl ConditionDetector {
     /// The first of the events that are due, which it then is no more: it happens at a time, s, from which others count.
     pub(super) fn next_event(&mut self, time: f64) -> Option<usize> {
         let event = |pending: &mut PendingCondition| match (pending.state, pending.action) {
-            (State::Due, Action::Event(event)) => {
-                pending.state = State::Done;
+            (Status::Due, Action::Event(event)) => {
+                pending.state = Status::Done;
                 Some(event)
             }
             _ => None,
@@ -230,7 +230,7 @@ impl ConditionDetector {
         for pending in &mut self.all {
             if let Some((_, delay)) = pending.waits_for.filter(|(other, _)| *other == event) {
                 pending.condition.value = time + delay;
-                pending.state = State::Armed;
+                pending.state = Status::Armed;
             }
         }
         Some(event)
@@ -239,14 +239,14 @@ impl ConditionDetector {
     /// How the flight ends, if a condition for that is due.
     pub(super) fn end(&self) -> Option<Termination> {
         self.all.iter().find_map(|pending| match (pending.state, pending.action) {
-            (State::Due, Action::End(termination)) => Some(termination),
+            (Status::Due, Action::End(termination)) => Some(termination),
             _ => None,
         })
     }
 
     /// Whether any condition is met at the present instant.
     pub(super) fn is_due(&self) -> bool {
-        self.all.iter().any(|pending| pending.state == State::Due)
+        self.all.iter().any(|pending| pending.state == Status::Due)
     }
 
     /// Whether nothing is watched.
@@ -255,7 +255,7 @@ impl ConditionDetector {
     }
 
     fn armed(&self) -> impl Iterator<Item = (usize, &PendingCondition)> {
-        self.all.iter().enumerate().filter(|(_, pending)| pending.state == State::Armed)
+        self.all.iter().enumerate().filter(|(_, pending)| pending.state == Status::Armed)
     }
 }
 
@@ -302,11 +302,11 @@ impl Detector for ConditionDetector {
         }
         let next = self.read_end(step);
         let last = std::mem::replace(&mut self.last, next);
-        for pending in self.all.iter_mut().filter(|pending| pending.state == State::Armed) {
+        for pending in self.all.iter_mut().filter(|pending| pending.state == Status::Armed) {
             let [last, next] = [last, next].map(|quantities| pending.before_among(&quantities).re);
             // Where conditions are met together, one of them cuts the step.
             if last > 0.0 && next <= 0.0 {
-                pending.state = State::Due;
+                pending.state = Status::Due;
             }
             // Once well on the near side, it is met on the value itself.
             if next > 2.0 * pending.margin {

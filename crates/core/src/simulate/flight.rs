@@ -15,7 +15,7 @@ use crate::event::{Effect, Engine};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Chatter, Formulation, Singularity, StateRate, heat_load};
-use crate::propulsion::{Axis, Impulse};
+use crate::propulsion::{Impulse, ThrustAxis};
 use crate::scenario::{Phase, Scenario};
 use crate::trajectory::{Arrival, EventRecord, Instant, Termination, Warning};
 
@@ -32,12 +32,12 @@ pub(super) struct Flight<'a, F, const N: usize> {
     state: [f64; N],
     /// Of the motion, to look inside steps and ahead of them.
     evaluations: usize,
-    pub(super) log: Log,
+    pub(super) log: FlightLog,
 }
 
 /// The record of a flight: its phases, events and warnings.
 #[derive(Default)]
-pub(super) struct Log {
+pub(super) struct FlightLog {
     /// The phases after the first.
     pub(super) phases: Vec<Phase>,
     pub(super) event_records: Vec<EventRecord>,
@@ -62,7 +62,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let model_boundaries = ModelBoundaryDetector::new(motion.forces(), &start);
         let conditions = ConditionDetector::new(case, motion.forces(), &start);
         let phase = Phase::first(case);
-        let log = Log::default();
+        let log = FlightLog::default();
         Ok(Self {
             scenario,
             motion,
@@ -300,7 +300,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 
     /// A direction at the present instant, if there is one.
-    fn direction(&self, along: Axis) -> Option<Vector3<f64>> {
+    fn direction(&self, along: ThrustAxis) -> Option<Vector3<f64>> {
         motion::direction(along, &self.scenario.case().planet, self.time, &F::planet_fixed(&self.state))
     }
 

@@ -12,7 +12,7 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
-use super::epoch::{Instant, Utc};
+use super::epoch::{Epoch, Utc};
 
 /// One quantity of the flight: a key of the states, a column of the trajectory.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub struct Column {
     /// Whether it is given only where `output.columns` names it.
     on_request: bool,
     needs: Needs,
-    quantity: Quantity,
+    quantity: ColumnSource,
 }
 
 /// What a case must have for a column.
@@ -42,7 +42,7 @@ enum Needs {
 
 /// How a column is made from a point of the flight.
 #[derive(Debug)]
-enum Quantity {
+enum ColumnSource {
     Number(fn(&FlightPoint) -> f64),
     Angle(fn(&FlightPoint) -> f64),
     /// In [0, 2π).
@@ -68,7 +68,7 @@ pub struct Known {
     /// Whether the atmosphere has a pressure.
     pub pressure: bool,
     /// The instant t = 0.
-    pub epoch: Option<Instant>,
+    pub epoch: Option<Epoch>,
     /// Whether there is a heat flux.
     pub heating: bool,
     /// Whether the mass may change.
@@ -95,16 +95,16 @@ impl Orbit {
     }
 }
 
-const fn of(name: &'static str, description: &'static str, quantity: Quantity) -> Column {
+const fn of(name: &'static str, description: &'static str, quantity: ColumnSource) -> Column {
     Column { name, description, on_request: false, needs: Needs::Nothing, quantity }
 }
 
 const fn column(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
-    of(name, description, Quantity::Number(value))
+    of(name, description, ColumnSource::Number(value))
 }
 
 const fn angle(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
-    of(name, description, Quantity::Angle(value))
+    of(name, description, ColumnSource::Angle(value))
 }
 
 const fn maybe(
@@ -113,15 +113,15 @@ const fn maybe(
     needs: Needs,
     value: fn(&FlightPoint) -> Option<f64>,
 ) -> Column {
-    Column { needs, ..of(name, description, Quantity::Maybe(value)) }
+    Column { needs, ..of(name, description, ColumnSource::Maybe(value)) }
 }
 
 const fn orbit(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
-    Column { on_request: true, ..of(name, description, Quantity::Orbit(value)) }
+    Column { on_request: true, ..of(name, description, ColumnSource::Orbit(value)) }
 }
 
 const fn orbit_turn(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
-    Column { on_request: true, ..of(name, description, Quantity::OrbitTurn(value)) }
+    Column { on_request: true, ..of(name, description, ColumnSource::OrbitTurn(value)) }
 }
 
 /// Every quantity, in the order of the answer.
@@ -155,7 +155,7 @@ pub static COLUMNS: [Column; 44] = [
     of(
         "azimuth",
         "The compass direction of the heading: from north (0) towards east (π/2), in [0, 2π).",
-        Quantity::Turn(azimuth),
+        ColumnSource::Turn(azimuth),
     ),
     column("air_speed", "Relative to the air, m/s.", |point| point.loads.air_speed),
     maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Needs::Temperature, |point| {
@@ -200,7 +200,7 @@ pub static COLUMNS: [Column; 44] = [
         ..of(
             "utc",
             "The instant in UTC, RFC 3339 to the microsecond; with an epoch; leap seconds counted. Null after the year 9999.",
-            Quantity::Utc,
+            ColumnSource::Utc,
         )
     },
     maybe(
@@ -350,16 +350,18 @@ impl Column {
     fn of(&self, point: &FlightPoint, unit: AngleUnit, known: &Known) -> Cell {
         let or_nothing = |value: Option<f64>| value.map_or(Cell::Nothing, Cell::Number);
         match self.quantity {
-            Quantity::Number(value) => Cell::Number(value(point)),
-            Quantity::Angle(value) => Cell::Number(unit.from_radians(value(point))),
-            Quantity::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
-            Quantity::Maybe(value) => or_nothing(value(point)),
-            Quantity::Orbit(value) => or_nothing(Orbit::of(point, known).as_ref().and_then(value)),
-            Quantity::OrbitTurn(value) => {
+            ColumnSource::Number(value) => Cell::Number(value(point)),
+            ColumnSource::Angle(value) => Cell::Number(unit.from_radians(value(point))),
+            ColumnSource::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
+            ColumnSource::Maybe(value) => or_nothing(value(point)),
+            ColumnSource::Orbit(value) => or_nothing(Orbit::of(point, known).as_ref().and_then(value)),
+            ColumnSource::OrbitTurn(value) => {
                 let angle = Orbit::of(point, known).as_ref().and_then(value);
                 or_nothing(angle.map(|angle| unit.turn_from_radians(angle)))
             }
-            Quantity::Utc => known.epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant),
+            ColumnSource::Utc => {
+                known.epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant)
+            }
         }
     }
 
@@ -367,10 +369,10 @@ impl Column {
     fn schema(&self) -> ObjectBuilder {
         let types = |kind| SchemaType::from_iter([kind, Type::Null]);
         match (&self.quantity, self.needs) {
-            (Quantity::Utc, _) => ObjectBuilder::new()
+            (ColumnSource::Utc, _) => ObjectBuilder::new()
                 .schema_type(types(Type::String))
                 .format(Some(SchemaFormat::KnownFormat(KnownFormat::DateTime))),
-            (Quantity::Maybe(_), Needs::Nothing) | (Quantity::Orbit(_) | Quantity::OrbitTurn(_), _) => {
+            (ColumnSource::Maybe(_), Needs::Nothing) | (ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_), _) => {
                 ObjectBuilder::new().schema_type(types(Type::Number))
             }
             _ => ObjectBuilder::new().schema_type(Type::Number),
@@ -455,15 +457,15 @@ impl Serialize for Values<'_> {
         let Columns { points, unit, known, .. } = self.columns;
         // The kind of the quantity is looked at once, not at every value.
         match self.column.quantity {
-            Quantity::Number(value) => serializer.collect_seq(points.iter().map(value)),
-            Quantity::Angle(value) => {
+            ColumnSource::Number(value) => serializer.collect_seq(points.iter().map(value)),
+            ColumnSource::Angle(value) => {
                 serializer.collect_seq(points.iter().map(|point| unit.from_radians(value(point))))
             }
-            Quantity::Turn(value) => {
+            ColumnSource::Turn(value) => {
                 serializer.collect_seq(points.iter().map(|point| unit.turn_from_radians(value(point))))
             }
-            Quantity::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
-            Quantity::Utc | Quantity::Orbit(_) | Quantity::OrbitTurn(_) => {
+            ColumnSource::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
+            ColumnSource::Utc | ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_) => {
                 serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, known)))
             }
         }
@@ -483,7 +485,7 @@ impl Columns {
     }
 
     /// The instant t = 0.
-    pub fn epoch(&self) -> Option<Instant> {
+    pub fn epoch(&self) -> Option<Epoch> {
         self.known.epoch
     }
 

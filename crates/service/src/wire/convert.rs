@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::epoch::Instant;
+use super::epoch::Epoch;
 use super::planet::Planet;
 use super::reader::{self, Fault, Object};
 use super::scenario::read_epoch;
@@ -33,7 +33,7 @@ pub struct ConvertRequest {
     /// The instant of the state: an RFC 3339 time. On the Earth it gives the angle to the inertial frame,
     /// where the state gives none; on a custom planet it gives none.
     #[schema(required = false, value_type = String, format = DateTime)]
-    pub epoch: Option<Instant>,
+    pub epoch: Option<Epoch>,
     /// The state.
     pub state: State,
     /// Whether the unit of angles is left out, though some angle is not 0.

@@ -44,7 +44,7 @@ impl ToSchema for SiderealTime {}
 
 /// What [`SiderealTime::read`] takes for a clock.
 const CLOCK_PATTERN: &str = r"^[0-9]{2,}:[0-5][0-9]:[0-5][0-9](\.[0-9]+)?$";
-/// What [`Instant::read`] takes for the form of a time; the calendar is checked beyond it.
+/// What [`Epoch::read`] takes for the form of a time; the calendar is checked beyond it.
 pub const RFC3339_PATTERN: &str =
     r"^[0-9]{4}-[0-9]{2}-[0-9]{2}[Tt][0-2][0-9]:[0-5][0-9]:[0-6][0-9](\.[0-9]+)?([Zz]|[+-][0-2][0-9]:[0-5][0-9])$";
 
@@ -82,7 +82,7 @@ fn clock_seconds(clock: &str) -> Option<f64> {
 ///
 /// It is kept to the nanosecond, in which the Earth turns by less than 1e-13 rad; further digits are dropped.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instant {
+pub struct Epoch {
     /// Days since 2000 January 1, of UTC.
     day: i64,
     /// Seconds of the day; 86 400 in a leap second.
@@ -127,7 +127,7 @@ const LEAP_SECONDS: [i64; 27] = [
 /// A day without a leap second, s.
 const DAY: i64 = 86_400;
 
-impl Instant {
+impl Epoch {
     /// Reads an RFC 3339 date and time.
     ///
     /// # Errors
@@ -185,7 +185,7 @@ impl Instant {
     }
 }
 
-/// The day since 2000 January 1, and its second, of a number of [elapsed](Instant::elapsed) seconds.
+/// The day since 2000 January 1, and its second, of a number of [elapsed](Epoch::elapsed) seconds.
 fn day_and_second(elapsed: i64) -> (i64, i64) {
     let mut seconds = elapsed;
     for leap in LEAP_SECONDS {
@@ -259,13 +259,13 @@ impl Rfc3339 {
     }
 
     /// The instant; none of a second 60 that is no leap second.
-    fn instant(&self) -> Option<Instant> {
+    fn instant(&self) -> Option<Epoch> {
         let is_leap_second = self.second == 60;
         let minutes = 60 * self.hour + self.minute - self.offset;
         let day = self.day + minutes.div_euclid(24 * 60);
         let second = 60 * minutes.rem_euclid(24 * 60) + self.second;
         let exists = !is_leap_second || second == DAY && LEAP_SECONDS.contains(&day);
-        exists.then_some(Instant { day, second, nanosecond: self.nanosecond })
+        exists.then_some(Epoch { day, second, nanosecond: self.nanosecond })
     }
 }
 

@@ -9,7 +9,7 @@ use reentry::event::{
     Trigger,
 };
 use reentry::parachute::Parachute as CoreParachute;
-use reentry::propulsion::{Axis as CoreAxis, Impulse, Thrust as CoreThrust};
+use reentry::propulsion::{Impulse, Thrust as CoreThrust, ThrustAxis as CoreAxis};
 use reentry::scenario::Bound;
 use serde::Serialize;
 use serde_json::json;

@@ -11,7 +11,7 @@ use super::AngleUnit;
 use super::atmosphere::Atmosphere;
 use super::columns::{COLUMNS, Column, Known};
 use super::control::Control;
-use super::epoch::Instant;
+use super::epoch::Epoch;
 use super::events::{Among, Condition, Event, MOST_EVENTS};
 use super::heating::Heating;
 use super::planet::Planet;
@@ -44,7 +44,7 @@ pub struct SimulateRequest {
     /// The instant t = 0: an RFC 3339 time. On the Earth it gives the angle to the inertial frame, where
     /// the state gives none; on a custom planet it dates the flight, and no more.
     #[schema(required = false, value_type = String, format = DateTime)]
-    pub epoch: Option<Instant>,
+    pub epoch: Option<Epoch>,
     /// Where it flies.
     #[schema(required = false)]
     pub planet: Planet,
@@ -371,8 +371,8 @@ pub fn fault(fault: &scenario::Fault) -> Fault {
 }
 
 /// Reads the epoch, which may be left out.
-pub fn read_epoch(object: &mut Object) -> Option<Instant> {
-    if object.has("epoch") { object.value("epoch", Instant::read) } else { None }
+pub fn read_epoch(object: &mut Object) -> Option<Epoch> {
+    if object.has("epoch") { object.value("epoch", Epoch::read) } else { None }
 }
 
 impl Stop {

@@ -22,7 +22,7 @@ use serde_json::json;
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::epoch::{Instant, SiderealTime};
+use super::epoch::{Epoch, SiderealTime};
 use super::planet::Planet;
 use super::reader::{Fault, Object};
 
@@ -105,7 +105,7 @@ impl State {
     }
 
     /// The angle in radians by which the planet is turned from the inertial frame of date; 0 where the request has a fault about it.
-    pub fn sidereal_angle(&self, epoch: Option<Instant>, unit: AngleUnit, planet: &Planet) -> f64 {
+    pub fn sidereal_angle(&self, epoch: Option<Epoch>, unit: AngleUnit, planet: &Planet) -> f64 {
         let orientation = self.orientation(epoch, "", unit, planet);
         orientation.map_or(0.0, |orientation| orientation.sidereal.to_angle(unit, &planet.core))
     }
@@ -116,7 +116,7 @@ impl State {
     /// With everything that is wrong across its fields.
     pub fn at(
         &self,
-        epoch: Option<Instant>,
+        epoch: Option<Epoch>,
         pointer: &str,
         unit: AngleUnit,
         planet: &Planet,
@@ -143,7 +143,7 @@ impl State {
     /// How the inertial frame lies: by the sidereal time or angle that the state gives, or else by the epoch.
     fn orientation(
         &self,
-        epoch: Option<Instant>,
+        epoch: Option<Epoch>,
         pointer: &str,
         unit: AngleUnit,
         planet: &Planet,
@@ -284,7 +284,7 @@ impl Sidereal {
     }
 
     /// By the Earth rotation angle of the instant.
-    fn of_earth(epoch: Instant, planet: &Planet) -> Self {
+    fn of_earth(epoch: Epoch, planet: &Planet) -> Self {
         let seconds = epoch.earth_rotation_angle() / planet.core.rotation_rate;
         Self { time: Some(SiderealTime(seconds)), angle: None }
     }

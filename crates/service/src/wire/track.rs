@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::columns::Columns;
-use super::epoch::{Instant, Utc};
+use super::epoch::{Epoch, Utc};
 use super::reader::Fault;
 use super::trajectory::{Peak, SimulateResponse};
 
@@ -22,7 +22,7 @@ use super::trajectory::{Peak, SimulateResponse};
 #[derive(Clone, Debug)]
 pub struct Track<'a> {
     answer: &'a SimulateResponse,
-    epoch: Option<Instant>,
+    epoch: Option<Epoch>,
     vertices: Vec<Vertex>,
     points: Vec<NamedPoint>,
 }
@@ -93,7 +93,7 @@ impl<'a> Track<'a> {
 }
 
 /// Everything that is marked: the end, the peaks, and the events.
-fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Instant>) -> Vec<NamedPoint> {
+fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Epoch>) -> Vec<NamedPoint> {
     let point = |kind, name, (quantity, value, unit), point: &FlightPoint| NamedPoint {
         name,
         kind,

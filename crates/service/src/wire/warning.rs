@@ -8,7 +8,7 @@ use reentry::trajectory::{self, TableId, Trajectory};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::epoch::Instant;
+use super::epoch::Epoch;
 use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
 use super::scenario::SimulateRequest;
@@ -209,7 +209,7 @@ impl Warning {
     }
 
     /// In which frame an inertial state was taken, on the Earth at an epoch.
-    pub fn of_frame(state: &State, epoch: Option<Instant>, planet: &Planet) -> Option<Self> {
+    pub fn of_frame(state: &State, epoch: Option<Epoch>, planet: &Planet) -> Option<Self> {
         let frame = state.frame().filter(|_| epoch.is_some() && planet.is_earth())?;
         Some(match frame {
             Frame::Date => {

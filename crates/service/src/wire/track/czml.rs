@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde_json::{Value, json};
 
-use super::{Instant, NamedPoint, Track, Vertex};
+use super::{Epoch, NamedPoint, Track, Vertex};
 
 impl Track<'_> {
     /// A list of packets: the document with its clock, the flight with its path, and the points.
@@ -14,7 +14,7 @@ impl Track<'_> {
     /// # Errors
     /// When it cannot be written.
     pub fn write_czml(&self, out: &mut impl Write) -> Result<(), serde_json::Error> {
-        let epoch = self.epoch.unwrap_or_else(Instant::noon_2000);
+        let epoch = self.epoch.unwrap_or_else(Epoch::noon_2000);
         let end = self.vertices.last().map_or(0.0, |vertex| vertex.time);
         let [start, end] =
             [0.0, end].map(|time| epoch.utc(time).map(|instant| instant.to_string()).unwrap_or_default());
