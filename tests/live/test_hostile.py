@@ -129,10 +129,10 @@ def test_answers_that_nobody_takes_are_thrown_away(start):
     for client in clients:
         client.sendall(request(HUGE))
     wait_for(lambda: metric(service, "reentry_connections_stalled_total") == len(clients))
-    assert metric(service, "reentry_held_bytes") == 0
+    # The last is counted as stalled a moment before it is gone.
+    wait_for(lambda: metric(service, "reentry_held_bytes") == 0)
     assert service.simulate(QUICK).status == 200
-    log = service.log.read_text()
-    assert log.count("client went away from its answer") == len(clients), log[-2000:]
+    wait_for(lambda: service.log.read_text().count("client went away from its answer") == len(clients))
     for client in clients:
         client.close()
 
