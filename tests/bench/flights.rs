@@ -113,7 +113,7 @@ fn right_hand_sides() {
         .map(|(_, case)| {
             let flight = simulate(&Scenario::new(case.clone()).unwrap(), &NEVER).unwrap();
             let points = flight.points(&flight.instants(&Sampling::Interval(0.1), 100_000).unwrap());
-            // Where no formula changes: one regime holds for all of them.
+            // Where no formula changes: one mode holds for all of them.
             let inside = points.into_iter().filter(|point| (52e3..70e3).contains(&point.loads.altitude));
             let states: Vec<(f64, [f64; 6])> =
                 inside.map(|point| (point.time, point.flight_path.to_planet_fixed().into())).collect();

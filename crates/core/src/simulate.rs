@@ -16,7 +16,7 @@ use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{Equations, Phase, Scenario};
-use crate::trajectory::{Arrival, Flown, StepOfEither, StoredStep, Trajectory};
+use crate::trajectory::{AnyStep, Arrival, Flown, StoredStep, Trajectory};
 use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
@@ -125,10 +125,10 @@ fn name(switch: Switch) -> &'static str {
 pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
     match (case.solver.equations, case.heating) {
-        (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), StepOfEither::Unheated, interrupt),
-        (Equations::Spherical, None) => record(scenario, Spherical(case.forces()), StepOfEither::Unheated, interrupt),
-        (Equations::Cartesian, Some(_)) => record(scenario, Cartesian(case.forces()), StepOfEither::Heated, interrupt),
-        (Equations::Spherical, Some(_)) => record(scenario, Spherical(case.forces()), StepOfEither::Heated, interrupt),
+        (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), AnyStep::Unheated, interrupt),
+        (Equations::Spherical, None) => record(scenario, Spherical(case.forces()), AnyStep::Unheated, interrupt),
+        (Equations::Cartesian, Some(_)) => record(scenario, Cartesian(case.forces()), AnyStep::Heated, interrupt),
+        (Equations::Spherical, Some(_)) => record(scenario, Spherical(case.forces()), AnyStep::Heated, interrupt),
     }
 }
 
@@ -156,7 +156,7 @@ pub fn arrival(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Arrival
 fn record<F: Formulation<N>, const N: usize>(
     scenario: &Scenario,
     motion: F,
-    keep: impl Fn(Step<N>) -> StepOfEither,
+    keep: impl Fn(Step<N>) -> AnyStep,
     interrupt: &dyn Interrupt,
 ) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();

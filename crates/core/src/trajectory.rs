@@ -8,13 +8,13 @@ mod stored_step;
 pub use phases::{FlightPhase, PhaseStart};
 pub use sampling::{Sampling, TooManyInstants};
 
-pub(crate) use stored_step::{Motion, StepOfEither, StoredStep};
+pub(crate) use stored_step::{AnyStep, Motion, StoredStep};
 
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use ground_track::GroundTrack;
-use stored_step::InterpolantOfEither;
+use stored_step::AnyInterpolant;
 
 use crate::atmosphere::AtmosphereSample;
 use crate::coordinates::{
@@ -474,7 +474,7 @@ impl Trajectory {
     pub fn points(&self, times: &[f64]) -> Vec<FlightPoint> {
         let steps = &self.flown.steps;
         let mut following = times.first().map_or(0, |first| steps.partition_point(|step| step.end_time() <= *first));
-        let mut known: Option<(usize, Motion, InterpolantOfEither)> = None;
+        let mut known: Option<(usize, Motion, AnyInterpolant)> = None;
         let mut point = |time: f64| {
             while steps.get(following).is_some_and(|step| step.end_time() <= time) {
                 following += 1;

@@ -2,7 +2,7 @@
 //!
 //! A step of the integration must not see such a change: an integrator that does grinds its steps down. While a step is taken, the
 //! mode therefore stays what it is, and every formula goes on beyond its own segment; the flight looks for the instant at which it
-//! leaves the segment, ends the step there, and [enters the mode](super::Forces::enter_mode_of) in the next mode.
+//! leaves the segment, ends the step there, and [enters the next mode](super::Forces::enter_mode_of).
 
 use num_dual::Dual64;
 
@@ -65,7 +65,7 @@ pub(crate) enum SwitchQuantity {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ModelMode([usize; Switch::ALL.len()]);
 
-/// The regimes on both sides of a boundary lead back across it.
+/// On either side of a boundary the motion leads back across it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chatter(pub(crate) Switch);
 

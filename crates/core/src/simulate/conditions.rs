@@ -39,7 +39,7 @@ struct PendingCondition {
     /// The event for which it waits, and the delay after it, s.
     waits_for: Option<(usize, f64)>,
     action: Action,
-    state: Status,
+    status: Status,
 }
 
 /// What follows when a condition is met.
@@ -59,18 +59,18 @@ enum Status {
     Armed,
     /// It is met at the present instant.
     Due,
-    /// It was met, and is not looked at any more.
+    /// It was met.
     Done,
 }
 
 impl PendingCondition {
     fn new(trigger: Trigger, action: Action) -> Self {
         let at = |value| Condition { quantity: Quantity::Time, value, direction: Direction::Rising };
-        let (condition, waits_for, state) = match trigger {
+        let (condition, waits_for, status) = match trigger {
             Trigger::Condition(condition) => (condition, None, Status::Armed),
             Trigger::After { event, delay } => (at(f64::INFINITY), Some((event, delay)), Status::Dormant),
         };
-        Self { condition, margin: 0.0, waits_for, action, state }
+        Self { condition, margin: 0.0, waits_for, action, status }
     }
 
     /// How far the quantity is before the value.
@@ -164,20 +164,20 @@ impl ConditionDetector {
 
     /// The condition that was found to be met at the present instant is.
     pub(super) fn meet(&mut self, index: usize) {
-        self.all[index].state = Status::Due;
+        self.all[index].status = Status::Due;
     }
 
     /// Finds all that are met at the present instant by the time, or by a jump from the near side or from the value.
-    pub(super) fn look(&mut self, forces: &Forces, now: &StateRate) {
+    pub(super) fn detect_jumps(&mut self, forces: &Forces, now: &StateRate) {
         let next = self.read(forces, now);
         let last = std::mem::replace(&mut self.last, next);
-        for pending in self.all.iter_mut().filter(|pending| pending.state == Status::Armed) {
+        for pending in self.all.iter_mut().filter(|pending| pending.status == Status::Armed) {
             let resolution = pending.condition.resolution();
             let [last, next] = [last, next].map(|quantities| pending.before_among(&quantities).re);
             let jumped = last > resolution && next <= resolution || last >= -resolution && next < -resolution;
             let is_time = pending.condition.quantity == Quantity::Time && next <= resolution;
             if jumped || is_time {
-                pending.state = Status::Due;
+                pending.status = Status::Due;
             }
         }
     }
@@ -186,7 +186,12 @@ impl ConditionDetector {
     ///
     /// However slowly it starts: the motion a moment later decides, not the rate at the instant, which may be zero or a rounding.
     /// `later` gives the moment after some time, s, and moments up to `horizon` are looked at, s.
-    pub(super) fn look_closely(&mut self, forces: &Forces, later: impl Fn(f64) -> StateRate, horizon: f64) -> bool {
+    pub(super) fn detect_departures(
+        &mut self,
+        forces: &Forces,
+        later: impl Fn(f64) -> StateRate,
+        horizon: f64,
+    ) -> bool {
         let is_on_value = |pending: &PendingCondition| {
             let off = pending.before_among(&self.last).re - pending.margin;
             pending.condition.quantity != Quantity::Time && off.abs() <= pending.condition.resolution()
@@ -206,7 +211,7 @@ impl ConditionDetector {
                 // To the last, what is far more than a rounding decides.
                 let resolution = pending.condition.resolution() * if is_last { 1e-3 } else { 1.0 };
                 if change < -resolution {
-                    pending.state = Status::Due;
+                    pending.status = Status::Due;
                     found = true;
                 } else {
                     pending.margin = 2.0 * pending.condition.resolution();
@@ -219,9 +224,9 @@ impl ConditionDetector {
 
     /// The first of the events that are due, which it then is no more: it happens at a time, s, from which others count.
     pub(super) fn next_event(&mut self, time: f64) -> Option<usize> {
-        let event = |pending: &mut PendingCondition| match (pending.state, pending.action) {
+        let event = |pending: &mut PendingCondition| match (pending.status, pending.action) {
             (Status::Due, Action::Event(event)) => {
-                pending.state = Status::Done;
+                pending.status = Status::Done;
                 Some(event)
             }
             _ => None,
@@ -230,7 +235,7 @@ impl ConditionDetector {
         for pending in &mut self.all {
             if let Some((_, delay)) = pending.waits_for.filter(|(other, _)| *other == event) {
                 pending.condition.value = time + delay;
-                pending.state = Status::Armed;
+                pending.status = Status::Armed;
             }
         }
         Some(event)
@@ -238,7 +243,7 @@ impl ConditionDetector {
 
     /// How the flight ends, if a condition for that is due.
     pub(super) fn end(&self) -> Option<Termination> {
-        self.all.iter().find_map(|pending| match (pending.state, pending.action) {
+        self.all.iter().find_map(|pending| match (pending.status, pending.action) {
             (Status::Due, Action::End(termination)) => Some(termination),
             _ => None,
         })
@@ -246,7 +251,7 @@ impl ConditionDetector {
 
     /// Whether any condition is met at the present instant.
     pub(super) fn is_due(&self) -> bool {
-        self.all.iter().any(|pending| pending.state == Status::Due)
+        self.all.iter().any(|pending| pending.status == Status::Due)
     }
 
     /// Whether nothing is watched.
@@ -255,7 +260,7 @@ impl ConditionDetector {
     }
 
     fn armed(&self) -> impl Iterator<Item = (usize, &PendingCondition)> {
-        self.all.iter().enumerate().filter(|(_, pending)| pending.state == Status::Armed)
+        self.all.iter().enumerate().filter(|(_, pending)| pending.status == Status::Armed)
     }
 }
 
@@ -302,11 +307,11 @@ impl Detector for ConditionDetector {
         }
         let next = self.read_end(step);
         let last = std::mem::replace(&mut self.last, next);
-        for pending in self.all.iter_mut().filter(|pending| pending.state == Status::Armed) {
+        for pending in self.all.iter_mut().filter(|pending| pending.status == Status::Armed) {
             let [last, next] = [last, next].map(|quantities| pending.before_among(&quantities).re);
             // Where conditions are met together, one of them cuts the step.
             if last > 0.0 && next <= 0.0 {
-                pending.state = Status::Due;
+                pending.status = Status::Due;
             }
             // Once well on the near side, it is met on the value itself.
             if next > 2.0 * pending.margin {
@@ -316,7 +321,7 @@ impl Detector for ConditionDetector {
     }
 }
 
-/// Times at which to look where a quantity goes, each four times the one before, up to a horizon, s; with whether it is the last.
+/// Times, s, after which it is seen whether a quantity rises or falls: each four times the one before, up to a horizon; with whether it is the last.
 pub(super) fn moments_up_to(horizon: f64) -> impl Iterator<Item = (f64, bool)> {
     const LOOKS: i32 = 10;
     (0..LOOKS).map(move |look| (horizon * 0.25_f64.powi(LOOKS - 1 - look), look == LOOKS - 1))

@@ -82,7 +82,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
         let is_on_ground = self.scenario.starts_on_stop_altitude();
         if !self.conditions.is_empty() {
-            return self.turn(None, None, is_on_ground);
+            return self.apply_changes(None, None, is_on_ground);
         }
         Ok((is_on_ground && !self.lifts_off()).then(|| self.arrival(self.ground())))
     }
@@ -124,8 +124,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         self.integrator.advance(&self.motion, horizon).map_err(|error| self.failure(error))
     }
 
-    /// Cuts a step at the first place that a detector locates in it, shows what is left, and does what happens at its end; returns the end
-    /// of the flight, if that was it.
+    /// Cuts a step at the first place that a detector locates in it, shows what is left to `observe`, and applies the changes at its end;
+    /// returns the end of the flight, if that was it.
     pub(super) fn pass(
         &mut self,
         step: &Step<N>,
@@ -134,7 +134,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let horizon = self.horizon();
         let Self { motion, integrator, stop_altitude, model_boundaries, conditions, evaluations, log, .. } = self;
         let mut view = StepView::new(motion, step, log.phases.len());
-        // Each looks at what those before have left, so that the last to cut is the first place.
+        // Each detector sees what the ones before have left of the step, so that the last that cuts has the first place. The stop altitude
+        // comes first: the boundary of a table that ends there lies beyond it by a rounding error.
         let at_stop_altitude = cut_at_first(&mut view, stop_altitude, integrator, evaluations);
         let at_boundary = cut_at_first(&mut view, model_boundaries, integrator, evaluations);
         let at_condition = cut_at_first(&mut view, conditions, integrator, evaluations);
@@ -161,13 +162,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             (None, None, Some(())) => ending = Some(self.ground()),
             (None, None, None) => {}
         }
-        let is_end_of_phase = is_cut || halted || self.conditions.is_due() || self.time >= horizon;
-        if is_end_of_phase { self.turn(crossing, ending, false) } else { Ok(None) }
+        let may_change = is_cut || halted || self.conditions.is_due() || self.time >= horizon;
+        if may_change { self.apply_changes(crossing, ending, false) } else { Ok(None) }
     }
 
-    /// Does what happens at the end of a step, and goes on from there in the mode and the phase that begin; returns the end of the
-    /// flight, if that was it. `is_on_ground` says that it starts on the stop altitude, which it may leave upward.
-    fn turn(
+    /// Applies the changes at the end of a step: events, burnout, inflations and the mode of the models; the integration restarts there.
+    /// Returns the end of the flight, if that was it. `is_on_ground`: the flight starts on the stop altitude, which it may leave upward.
+    fn apply_changes(
         &mut self,
         crossing: Option<BoundaryCrossing>,
         mut ending: Option<Termination>,
@@ -203,18 +204,18 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Lets all happen that is met at the present instant; returns whether the flight leaves the stop altitude, if it `is_on_ground`.
     fn let_events_happen(&mut self, is_on_ground: bool) -> Result<bool, SimulationError> {
-        self.look();
+        self.detect_jumps();
         loop {
             while let Some(event) = self.conditions.next_event(self.time) {
                 self.happen(event)?;
                 self.change_by_time()?;
-                self.look();
+                self.detect_jumps();
             }
             if is_on_ground && !self.lifts_off() {
                 return Ok(false);
             }
             // What else moves on from its value is known when all that changes the motion has happened.
-            if !self.look_closely() {
+            if !self.detect_departures() {
                 return Ok(true);
             }
         }
@@ -248,18 +249,18 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 
     /// Finds the conditions that are met at the present instant.
-    fn look(&mut self) {
+    fn detect_jumps(&mut self) {
         let derivative = self.motion.derivative(self.time, &self.state);
         self.evaluations += 1;
         let now = StateRate::of::<F, N>(self.time, &self.state, &derivative);
-        self.conditions.look(self.motion.forces(), &now);
+        self.conditions.detect_jumps(self.motion.forces(), &now);
     }
 
     /// Finds the conditions that are met at the present instant by a quantity that is on the value and moves on.
-    fn look_closely(&mut self) -> bool {
+    fn detect_departures(&mut self) -> bool {
         let foresight = self.foresight();
         let Self { conditions, motion, time, state, .. } = self;
-        conditions.look_closely(motion.forces(), |length| later(motion, *time, state, length), foresight)
+        conditions.detect_departures(motion.forces(), |length| later(motion, *time, state, length), foresight)
     }
 
     /// The time over which the motion is followed ahead, s, where the rates at an instant do not decide whether a quantity rises or falls.

@@ -7,14 +7,14 @@ use crate::motion::{Cartesian, Forces, Formulation, ModelMode, Spherical, heat_l
 /// A step of a flight, and the phase and the mode of its models during it.
 #[derive(Clone, Debug)]
 pub(crate) struct StoredStep {
-    pub(crate) step: StepOfEither,
+    pub(crate) step: AnyStep,
     pub(crate) phase: usize,
     pub(crate) mode: ModelMode,
 }
 
 /// A step, with or without the heat load.
 #[derive(Clone, Debug)]
-pub(crate) enum StepOfEither {
+pub(crate) enum AnyStep {
     Unheated(Step<6>),
     Heated(Step<7>),
 }
@@ -26,7 +26,7 @@ pub(crate) enum Motion {
 }
 
 /// The motion inside a step.
-pub(crate) enum InterpolantOfEither {
+pub(crate) enum AnyInterpolant {
     Unheated(Interpolant<6>),
     Heated(Interpolant<7>),
 }
@@ -35,29 +35,29 @@ impl StoredStep {
     /// s.
     pub(crate) fn start_time(&self) -> f64 {
         match &self.step {
-            StepOfEither::Unheated(step) => step.start_time,
-            StepOfEither::Heated(step) => step.start_time,
+            AnyStep::Unheated(step) => step.start_time,
+            AnyStep::Heated(step) => step.start_time,
         }
     }
 
     /// s.
     pub(crate) fn end_time(&self) -> f64 {
         match &self.step {
-            StepOfEither::Unheated(step) => step.end_time,
-            StepOfEither::Heated(step) => step.end_time,
+            AnyStep::Unheated(step) => step.end_time,
+            AnyStep::Heated(step) => step.end_time,
         }
     }
 
     /// The instant at a part of the step, s.
     pub(crate) fn time(&self, part: f64) -> f64 {
         match &self.step {
-            StepOfEither::Unheated(step) => step.time(part),
-            StepOfEither::Heated(step) => step.time(part),
+            AnyStep::Unheated(step) => step.time(part),
+            AnyStep::Heated(step) => step.time(part),
         }
     }
 }
 
-impl InterpolantOfEither {
+impl AnyInterpolant {
     /// The state and the heat load, J/m², at an instant.
     pub(crate) fn at(&self, motion: &Motion, time: f64) -> (PlanetFixed<f64>, Option<f64>) {
         match self {
@@ -80,28 +80,20 @@ impl Motion {
         }
     }
 
-    pub(crate) fn interpolant(&self, step: &StepOfEither) -> InterpolantOfEither {
+    pub(crate) fn interpolant(&self, step: &AnyStep) -> AnyInterpolant {
         match (self, step) {
-            (Self::Cartesian(motion), StepOfEither::Unheated(step)) => {
-                InterpolantOfEither::Unheated(step.interpolant(motion))
-            }
-            (Self::Cartesian(motion), StepOfEither::Heated(step)) => {
-                InterpolantOfEither::Heated(step.interpolant(motion))
-            }
-            (Self::Spherical(motion), StepOfEither::Unheated(step)) => {
-                InterpolantOfEither::Unheated(step.interpolant(motion))
-            }
-            (Self::Spherical(motion), StepOfEither::Heated(step)) => {
-                InterpolantOfEither::Heated(step.interpolant(motion))
-            }
+            (Self::Cartesian(motion), AnyStep::Unheated(step)) => AnyInterpolant::Unheated(step.interpolant(motion)),
+            (Self::Cartesian(motion), AnyStep::Heated(step)) => AnyInterpolant::Heated(step.interpolant(motion)),
+            (Self::Spherical(motion), AnyStep::Unheated(step)) => AnyInterpolant::Unheated(step.interpolant(motion)),
+            (Self::Spherical(motion), AnyStep::Heated(step)) => AnyInterpolant::Heated(step.interpolant(motion)),
         }
     }
 
     /// The state at the end of a step.
-    pub(crate) fn end(&self, step: &StepOfEither) -> PlanetFixed<f64> {
+    pub(crate) fn end(&self, step: &AnyStep) -> PlanetFixed<f64> {
         match step {
-            StepOfEither::Unheated(step) => self.state(&step.end).0,
-            StepOfEither::Heated(step) => self.state(&step.end).0,
+            AnyStep::Unheated(step) => self.state(&step.end).0,
+            AnyStep::Heated(step) => self.state(&step.end).0,
         }
     }
 
