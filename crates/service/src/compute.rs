@@ -291,3 +291,43 @@ impl Drop for Pool {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_long_job_gives_way_and_is_known_once_it_is_given_up() {
+        let config = Config { workers: 1, queue: 4, deadline: Duration::from_secs(2), ..Config::default() };
+        let metrics = Arc::new(Metrics::new(1));
+        let compute = Arc::new(Compute::new(&config, Memory::new(1 << 20), metrics, None).unwrap());
+        let given_up = || compute.singles.turns.given_up(Instant::now().into_std());
+        let client = Client::default();
+        let (begin, begun) = std::sync::mpsc::channel();
+        let of_endless = Arc::clone(&compute);
+        let endless = tokio::spawn(async move {
+            let job = move |task: &Task| {
+                let _ = begin.send(());
+                while !reentry::Interrupt::is_raised(task) {}
+                Err::<(), _>(ApiError::Interrupted)
+            };
+            of_endless.run("/simulate", client, job).await
+        });
+        begun.recv().unwrap();
+        // There is one worker, which the endless one has until it is long.
+        compute.run("/simulate", client, |_| Ok(())).await.unwrap();
+        assert_eq!(given_up(), 0);
+        assert!(matches!(endless.await.unwrap(), Err(ApiError::DeadlineExceeded { .. })));
+        // It looks at its flag once more before it is over.
+        let is_known = async {
+            while given_up() == 0 {
+                tokio::task::yield_now().await;
+            }
+        };
+        timeout(Duration::from_secs(60), is_known).await.unwrap();
+        // One that was never long says nothing of those to come.
+        let short = compute.run("/simulate", client, |_| Err::<(), _>(ApiError::Interrupted)).await;
+        assert!(short.is_err());
+        assert_eq!(given_up(), 1);
+    }
+}
