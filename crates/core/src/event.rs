@@ -37,14 +37,6 @@ impl From<Condition> for Trigger {
 }
 
 impl Trigger {
-    /// The place of the event that is waited for, if one is.
-    pub fn awaited(&self) -> Option<usize> {
-        match *self {
-            Self::Condition(_) => None,
-            Self::After { event, .. } => Some(event),
-        }
-    }
-
     /// The condition, if it is one.
     pub fn condition(&self) -> Option<&Condition> {
         match self {
@@ -220,6 +212,14 @@ impl Condition {
 }
 
 impl Effect {
+    /// The thrust that is switched on, if one is.
+    pub(crate) fn thrust(&self) -> Option<&Thrust> {
+        match &self.engine {
+            Some(Engine::On(thrust)) => Some(thrust),
+            Some(Engine::Off) | None => None,
+        }
+    }
+
     /// Whether it changes nothing.
     pub fn is_none(&self) -> bool {
         *self == Self::default()

@@ -2,6 +2,7 @@
 
 mod cartesian;
 mod directions;
+mod dispatch;
 mod loads;
 mod model_mode;
 mod quantity;
@@ -13,6 +14,7 @@ pub use loads::Loads;
 pub use model_mode::{ModelMode, Switch, TableId};
 pub use spherical::Spherical;
 
+pub(crate) use dispatch::{ForFormulation, FormulationIn, dispatch};
 pub(crate) use model_mode::{Chatter, SwitchQuantity};
 pub(crate) use quantity::StateRate;
 

@@ -2,26 +2,26 @@
 
 use crate::scalar::{Over, Scalar};
 
-/// A parachute, whose drag adds to that of the vehicle.
+/// A parachute, whose drag adds to that of the vehicle. Its numbers may carry derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parachute {
+pub struct Parachute<P = f64> {
     /// `C_D S` of the full canopy, m².
-    pub drag_area: f64,
+    pub drag_area: P,
     /// How long the canopy fills, s; 0: it opens at once.
-    pub inflation_time: f64,
+    pub inflation_time: P,
     /// From the deployment until the canopy begins to fill, s.
-    pub delay: f64,
+    pub delay: P,
 }
 
 /// A parachute that was deployed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Canopy {
+pub struct Canopy<P = f64> {
     /// The number of the event that deployed it.
     pub event: usize,
     /// The parachute.
-    pub parachute: Parachute,
+    pub parachute: Parachute<P>,
     /// The time of the deployment, s.
-    pub deployed: f64,
+    pub deployed: P,
     /// The state of its inflation.
     pub inflation: Inflation,
 }
@@ -37,44 +37,49 @@ pub enum Inflation {
     Over,
 }
 
-impl Parachute {
-    /// When the canopy begins to fill, s, if it is deployed at a time, s.
-    pub(crate) fn opens<S: Scalar>(&self, deployed: S) -> S {
-        deployed + self.delay
-    }
-
-    /// When the canopy is full, s, if it is deployed at a time, s.
-    pub(crate) fn is_full_at<S: Scalar>(&self, deployed: S) -> S {
-        self.opens(deployed) + self.inflation_time
-    }
-}
-
-impl Canopy {
+impl<P: Scalar<Value = f64>> Canopy<P> {
     /// One that is deployed at a time, s.
-    pub(crate) fn new(event: usize, parachute: Parachute, deployed: f64) -> Self {
+    pub(crate) fn new(event: usize, parachute: Parachute<P>, deployed: P) -> Self {
         Self { event, parachute, deployed, inflation: Inflation::Ahead }.at(deployed)
     }
 
-    /// When it begins to fill, or is full, s, whichever comes next.
-    pub(crate) fn next_corner(&self) -> Option<f64> {
-        self.corner(self.deployed)
+    /// The same in other numbers.
+    pub(crate) fn map<Q>(&self, number: impl Fn(P) -> Q + Copy) -> Canopy<Q> {
+        let Self { event, parachute: Parachute { drag_area, inflation_time, delay }, deployed, inflation } = *self;
+        let [drag_area, inflation_time, delay] = [drag_area, inflation_time, delay].map(number);
+        Canopy {
+            event,
+            parachute: Parachute { drag_area, inflation_time, delay },
+            deployed: number(deployed),
+            inflation,
+        }
     }
 
-    /// When it begins to fill, or is full, s, whichever comes next, if it is deployed at a time, s.
-    pub(crate) fn corner<S: Scalar>(&self, deployed: S) -> Option<S> {
+    /// When it begins to fill, s.
+    fn opens(&self) -> P {
+        self.deployed + self.parachute.delay
+    }
+
+    /// When it is full, s.
+    fn is_full_at(&self) -> P {
+        self.opens() + self.parachute.inflation_time
+    }
+
+    /// When it begins to fill, or is full, s, whichever comes next.
+    pub(crate) fn next_corner(&self) -> Option<P> {
         match self.inflation {
-            Inflation::Ahead => Some(self.parachute.opens(deployed)),
-            Inflation::Running => Some(self.parachute.is_full_at(deployed)),
+            Inflation::Ahead => Some(self.opens()),
+            Inflation::Running => Some(self.is_full_at()),
             Inflation::Over => None,
         }
     }
 
     /// The same, as far as it is at a time, s.
     #[must_use]
-    pub(crate) fn at(&self, time: f64) -> Self {
-        let inflation = if time >= self.parachute.is_full_at(self.deployed) {
+    pub(crate) fn at(&self, time: P) -> Self {
+        let inflation = if time.value() >= self.is_full_at().value() {
             Inflation::Over
-        } else if time >= self.parachute.opens(self.deployed) {
+        } else if time.value() >= self.opens().value() {
             Inflation::Running
         } else {
             Inflation::Ahead
@@ -99,30 +104,32 @@ pub struct Filling<P> {
     pub full: P,
     /// The time at which the inflation began, s.
     pub since: P,
-    /// The duration of the inflation, s.
-    pub inflation_time: f64,
+    /// One over the duration of the inflation, 1/s.
+    pub over_inflation_time: P,
 }
 
-impl<P: Scalar> Canopies<P> {
-    /// Those of a vehicle with one over its mass, 1/kg, each with the time at which it was deployed, s.
-    pub(crate) fn of(canopies: impl Iterator<Item = (Canopy, P)>, over_mass: P) -> Option<Self> {
+impl<P: Scalar<Value = f64>> Canopies<P> {
+    /// Those of a vehicle with one over its mass, 1/kg.
+    pub(crate) fn of(canopies: &[Canopy<P>], over_mass: P) -> Option<Self> {
         let mut of_all = Self { full: P::zero(), filling: Vec::new() };
         // What has no drag at all may have no mass to speak of.
-        for (Canopy { parachute, inflation, .. }, deployed) in canopies.filter(|(it, _)| it.parachute.drag_area > 0.0) {
-            let full = over_mass * parachute.drag_area;
-            match inflation {
+        for canopy in canopies.iter().filter(|canopy| canopy.parachute.drag_area.value() > 0.0) {
+            let full = over_mass * canopy.parachute.drag_area;
+            match canopy.inflation {
                 Inflation::Ahead => {}
                 Inflation::Running => {
-                    let (since, inflation_time) = (parachute.opens(deployed), parachute.inflation_time);
-                    of_all.filling.push(Filling { full, since, inflation_time });
+                    let over_inflation_time = canopy.parachute.inflation_time.recip();
+                    of_all.filling.push(Filling { full, since: canopy.opens(), over_inflation_time });
                 }
                 Inflation::Over => of_all.full += full,
             }
         }
         let Self { full, filling } = &of_all;
-        (!filling.is_empty() || *full != P::zero()).then_some(of_all)
+        (!filling.is_empty() || full.value() != 0.0).then_some(of_all)
     }
+}
 
+impl<P: Scalar> Canopies<P> {
     /// The drag area over the mass at a time, m²/kg.
     ///
     /// ```text
@@ -135,7 +142,7 @@ impl<P: Scalar> Canopies<P> {
     #[inline]
     pub(crate) fn area_over_mass<S: Over<P>>(&self, time: S) -> S {
         self.filling.iter().fold(S::zero() + self.full, |sum, filling| {
-            let part = (time + -filling.since) / filling.inflation_time;
+            let part = (time + -filling.since) * filling.over_inflation_time;
             sum + part * part * filling.full
         })
     }

@@ -2,6 +2,8 @@
 
 use nalgebra::{Rotation3, UnitVector3, Vector3};
 
+use crate::scalar::Scalar;
+
 /// The unit of the load factor and of the specific impulse, m/s²: the standard acceleration of gravity (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
@@ -64,20 +66,20 @@ pub struct Impulse {
     pub speed_change: f64,
 }
 
-/// A constant force that is switched on, and that may burn propellant at a constant rate.
+/// A constant force that is switched on, and that may burn propellant at a constant rate. Its numbers may carry derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thrust {
+pub struct Thrust<P = f64> {
     /// Where to, at every instant.
     pub along: ThrustAxis,
     /// N; negative against the direction.
-    pub force: f64,
+    pub force: P,
     /// The impulse that a unit of propellant's weight at standard gravity gives, s; without a number, the mass stays.
-    pub specific_impulse: Option<f64>,
+    pub specific_impulse: Option<P>,
     /// How much there is to burn, kg; without a number, until the thrust is switched off. Only with a specific impulse.
-    pub propellant: Option<f64>,
+    pub propellant: Option<P>,
 }
 
-impl Thrust {
+impl<P: Scalar> Thrust<P> {
     /// The propellant that is burnt, kg/s; none without a specific impulse.
     ///
     /// ```text
@@ -96,7 +98,20 @@ impl Thrust {
     /// let thrust = Thrust { along: ThrustAxis::Velocity, force: -3000.0, specific_impulse, propellant: None };
     /// assert!((thrust.mass_flow() - 1.0).abs() < 1e-15);
     /// ```
-    pub fn mass_flow(&self) -> f64 {
-        self.specific_impulse.map_or(0.0, |specific_impulse| self.force.abs() / (STANDARD_GRAVITY * specific_impulse))
+    pub fn mass_flow(&self) -> P {
+        let of = |specific_impulse: P| self.magnitude() * (specific_impulse * STANDARD_GRAVITY).recip();
+        self.specific_impulse.map_or(P::zero(), of)
+    }
+
+    /// The same in other numbers.
+    pub(crate) fn map<Q>(&self, number: impl Fn(P) -> Q + Copy) -> Thrust<Q> {
+        let Self { along, force, specific_impulse, propellant } = *self;
+        let [specific_impulse, propellant] = [specific_impulse, propellant].map(|of| of.map(number));
+        Thrust { along, force: number(force), specific_impulse, propellant }
+    }
+
+    /// The size of the force, N.
+    pub(crate) fn magnitude(&self) -> P {
+        P::select(self.force.less_than(0.0), -self.force, self.force)
     }
 }

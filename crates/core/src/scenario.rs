@@ -1,14 +1,18 @@
 //! A case (vehicle, initial state, environment, events, stop conditions, solver), and the check that it can be flown.
 
 mod bounds;
+mod numbers;
 mod phase;
 
 pub use bounds::Bound;
-pub use phase::Phase;
+
+pub(crate) use numbers::Numbers;
+pub(crate) use phase::Phase;
 
 use bounds::out_of_bounds;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
@@ -18,6 +22,7 @@ use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters};
 use crate::number_text::apart;
 use crate::planet::Planet;
+use crate::scalar::Scalar;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
 
@@ -328,7 +333,7 @@ impl Case {
 
     /// The numbers that may vary, beside the state, at the start.
     pub fn parameters(&self) -> Parameters<f64> {
-        self.parameters_of(&self.vehicle)
+        Self::parameters_of(self, &self.vehicle, [0.0; 3])
     }
 
     /// Whether anything may lift the vehicle, or push it across its way, so that near the vertical something fades out.
@@ -359,7 +364,7 @@ impl Case {
     }
 
     /// The models, with a vehicle in place of that of the start.
-    pub(crate) fn models_of(&self, vehicle: &Vehicle) -> Models {
+    pub(crate) fn models_of<P>(&self, vehicle: &Vehicle<P>) -> Models {
         const NONE: Aerodynamics = Aerodynamics::Constant { lift_coefficient: 0.0, drag_coefficient: 0.0 };
         const NO_ANGLE: Command = Command::Constant(0.0);
         let atmosphere = match &self.atmosphere {
@@ -370,7 +375,8 @@ impl Case {
         };
         let aerodynamics = match &vehicle.aerodynamics {
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => NONE,
-            other => other.clone(),
+            Aerodynamics::MachTable(table) => Aerodynamics::MachTable(Arc::clone(table)),
+            Aerodynamics::AlphaMachTable(table) => Aerodynamics::AlphaMachTable(Arc::clone(table)),
         };
         let Control { bank_angle, angle_of_attack } = self.control.clone();
         let bank_angle = if matches!(bank_angle, Command::Constant(_)) { NO_ANGLE } else { bank_angle };
@@ -387,27 +393,32 @@ impl Case {
         }
     }
 
-    /// The numbers that may vary, beside the state, with a vehicle in place of that of the start.
-    pub(crate) fn parameters_of(&self, vehicle: &Vehicle) -> Parameters<f64> {
+    /// The numbers that may vary, beside the state, with a vehicle in place of that of the start; `offsets` are those of [`Numbers::offsets`].
+    pub(crate) fn parameters_of<P: Scalar>(
+        numbers: &impl Numbers<P>,
+        vehicle: &Vehicle<P>,
+        offsets: [P; 3],
+    ) -> Parameters<P> {
         let Vehicle { mass, reference_area, aerodynamics, .. } = vehicle;
+        let [lift, drag, bank] = offsets;
         let [mass, reference_area, lift_coefficient, drag_coefficient] = match *aerodynamics {
             Aerodynamics::Constant { lift_coefficient, drag_coefficient } => {
                 [*mass, *reference_area, lift_coefficient, drag_coefficient]
             }
             // The ratios are those of a vehicle of this mass with unit area and drag.
             Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => {
-                [ballistic_coefficient, 1.0, lift_to_drag, 1.0]
+                [ballistic_coefficient, P::one(), lift_to_drag, P::one()]
             }
-            Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => [*mass, *reference_area, 0.0, 0.0],
+            Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => [*mass, *reference_area, lift, drag],
         };
-        let density = match self.atmosphere {
-            Atmosphere::Exponential { surface_density, .. } => surface_density * self.density_factor,
-            Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => self.density_factor,
-        };
-        let bank_angle = match self.control.bank_angle {
+        let density = numbers.number(|case| match case.atmosphere {
+            Atmosphere::Exponential { surface_density, .. } => surface_density * case.density_factor,
+            Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => case.density_factor,
+        });
+        let bank_angle = numbers.number(|case| match case.control.bank_angle {
             Command::Constant(angle) => angle,
             Command::Schedule(_) => 0.0,
-        };
+        }) + bank;
         Parameters { mass, reference_area, lift_coefficient, drag_coefficient, density, bank_angle }
     }
 

@@ -14,6 +14,7 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use ground_track::GroundTrack;
+use nalgebra::Vector3;
 use stored_step::AnyInterpolant;
 
 use crate::atmosphere::AtmosphereSample;
@@ -318,9 +319,25 @@ pub(crate) struct EventRecord {
 pub struct Trajectory {
     pub(crate) case: Case,
     pub(crate) flown: Flown,
-    great_circle: GreatCircle,
+    pub(crate) origin: Origin,
     /// Made when it is first needed.
     ground_track: OnceLock<GroundTrack>,
+}
+
+/// From where distances over the ground are measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Origin {
+    /// On which the flight sets out.
+    great_circle: GreatCircle,
+    /// The initial position.
+    position: Vector3<f64>,
+}
+
+impl Origin {
+    /// That of a flight that starts in this state.
+    pub(crate) fn of(start: &PlanetFixed<f64>) -> Self {
+        Self { great_circle: GreatCircle::of(start), position: start.position }
+    }
 }
 
 /// What a flight leaves behind.
@@ -340,10 +357,28 @@ pub(crate) struct Flown {
     pub(crate) warnings: Vec<Warning>,
 }
 
+/// The motion inside a step of a flight.
+pub(crate) struct InsideStep<'a> {
+    flight: &'a Trajectory,
+    step: &'a StoredStep,
+    motion: Motion,
+    interpolant: AnyInterpolant,
+}
+
+impl InsideStep<'_> {
+    /// The point at a part of the step.
+    pub(crate) fn point(&self, part: f64) -> FlightPoint {
+        let Self { flight, step, motion, interpolant } = self;
+        let time = step.time(part);
+        let (state, heat_load) = interpolant.at(motion, time);
+        flight.point(motion.forces(), step.phase, time, &state, heat_load)
+    }
+}
+
 impl Trajectory {
     pub(crate) fn new(case: Case, flown: Flown) -> Self {
-        let great_circle = GreatCircle::of(&case.initial_state);
-        let mut flight = Self { case, flown, great_circle, ground_track: OnceLock::new() };
+        let origin = Origin::of(&case.initial_state);
+        let mut flight = Self { case, flown, origin, ground_track: OnceLock::new() };
         let ranges = flight.outside_ranges();
         flight.flown.warnings.extend(ranges);
         let faded = flight.wind_fades().map(|time| Warning::WindFadedNearPole { time });
@@ -502,6 +537,12 @@ impl Trajectory {
         times.iter().map(|time| point(*time)).collect()
     }
 
+    /// The motion inside a step.
+    pub(crate) fn inside<'a>(&'a self, step: &'a StoredStep) -> InsideStep<'a> {
+        let motion = self.motion(step);
+        InsideStep { flight: self, step, interpolant: motion.interpolant(&step.step), motion }
+    }
+
     /// The equations that were integrated in a step.
     pub(crate) fn motion(&self, step: &StoredStep) -> Motion {
         let forces = self.forces(step.phase, step.mode);
@@ -543,7 +584,7 @@ impl Trajectory {
                 return None;
             }
             let motion = known.map_or_else(|| self.motion(step), |(motion, from)| self.going_on(motion, from, step));
-            state = track.extend(&motion, step, &state, &self.great_circle);
+            state = track.extend(&motion, step, &state, &self.origin.great_circle);
             known = Some((motion, step));
         }
         Some(track)
@@ -568,7 +609,21 @@ impl Trajectory {
         state: &PlanetFixed<f64>,
         heat_load: Option<f64>,
     ) -> FlightPoint {
-        let planet = &self.case.planet;
+        self.point_from(&self.origin, forces, &self.flown.phases[phase], time, state, heat_load)
+    }
+
+    /// The point of a state near the flight, which may have set out from another origin, and fly under other forces in another phase; its
+    /// ground distance is that of the flight at the time.
+    pub(crate) fn point_from(
+        &self,
+        origin: &Origin,
+        forces: &Forces,
+        phase: &Phase,
+        time: f64,
+        state: &PlanetFixed<f64>,
+        heat_load: Option<f64>,
+    ) -> FlightPoint {
+        let planet = forces.planet();
         let flight_path = FlightPath::from_planet_fixed(state).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &planet.shape);
         let AtmosphereSample { temperature, pressure, speed_of_sound, .. } = forces.air_at(state);
@@ -578,12 +633,12 @@ impl Trajectory {
         let across = inertial.position.cross(&inertial.velocity).norm();
         let track = self.ground_track.get_or_init(|| self.ground_track_until(|| false).unwrap_or_default());
         let [length, near] = track.length_and_along(time);
-        let range = self.great_circle.along_and_across(&state.position).map(|[along, across]| {
+        let range = origin.great_circle.along_and_across(&state.position).map(|[along, across]| {
             // A piece of the track is shorter than half a turn about the pole.
             [along + TAU * ((near - along) / TAU).round(), across]
         });
         let sphere = planet.equatorial_radius();
-        let from = &self.flown.start.state.position;
+        let from = &origin.position;
         let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * sphere));
         let loads = forces.loads(time, state);
         let wall = forces.heating().zip(loads.heat_flux);
@@ -606,8 +661,8 @@ impl Trajectory {
             // By the place itself, from which it is exactly 0 away.
             ground_range: from.cross(&state.position).norm().atan2(from.dot(&state.position)) * sphere,
             ground_distance: length * sphere,
-            mass: self.flown.phases[phase].mass(time),
-            thrust: self.flown.phases[phase].thrust.map_or(0.0, |thrust| thrust.force.abs()),
+            mass: phase.mass(time),
+            thrust: phase.thrust.map_or(0.0, |thrust| thrust.force.abs()),
             heat_load,
             wall_temperature: wall.map(|(nose, flux)| nose.wall_temperature(flux.total())),
         }

@@ -8,22 +8,25 @@ pub use mach_table::MachTable;
 
 use std::sync::Arc;
 
-/// Lift and drag coefficients.
+use crate::scalar::Scalar;
+use crate::scenario::{Case, Numbers};
+
+/// Lift and drag coefficients. Those that are numbers by themselves may carry derivatives.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Aerodynamics {
+pub enum Aerodynamics<P = f64> {
     /// The same at every speed.
     Constant {
         /// `C_L`; negative lift points down at zero bank.
-        lift_coefficient: f64,
+        lift_coefficient: P,
         /// `C_D`.
-        drag_coefficient: f64,
+        drag_coefficient: P,
     },
     /// The same at every speed, given by ratios; the mass and the reference area of the vehicle do not matter.
     Ballistic {
         /// `m/(C_D S)`, kg/m².
-        ballistic_coefficient: f64,
+        ballistic_coefficient: P,
         /// `C_L/C_D`.
-        lift_to_drag: f64,
+        lift_to_drag: P,
     },
     /// By Mach number.
     MachTable(Arc<MachTable>),
@@ -31,15 +34,15 @@ pub enum Aerodynamics {
     AlphaMachTable(Arc<AlphaMachTable>),
 }
 
-/// A point mass with lift and drag.
+/// A point mass with lift and drag. Its numbers may carry derivatives.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Vehicle {
+pub struct Vehicle<P = f64> {
     /// Mass, kg.
-    pub mass: f64,
+    pub mass: P,
     /// Area to which the coefficients refer, m².
-    pub reference_area: f64,
+    pub reference_area: P,
     /// The coefficients.
-    pub aerodynamics: Aerodynamics,
+    pub aerodynamics: Aerodynamics<P>,
     /// Of the nose at its stagnation point, m; needed for heating alone.
     pub nose_radius: Option<f64>,
 }
@@ -71,16 +74,66 @@ impl Aerodynamics {
             Self::AlphaMachTable(table) => table.has_lift(),
         }
     }
+
+    /// The two numbers by themselves; zeros of a table.
+    fn numbers(&self) -> [f64; 2] {
+        match *self {
+            Self::Constant { lift_coefficient, drag_coefficient } => [lift_coefficient, drag_coefficient],
+            Self::Ballistic { ballistic_coefficient, lift_to_drag } => [ballistic_coefficient, lift_to_drag],
+            Self::MachTable(_) | Self::AlphaMachTable(_) => [0.0; 2],
+        }
+    }
 }
 
-impl Vehicle {
+impl<P: Scalar> Aerodynamics<P> {
+    /// Coefficients of a case, with its numbers.
+    pub(crate) fn of(numbers: &impl Numbers<P>, of: impl Fn(&Case) -> &Aerodynamics) -> Self {
+        let [first, second] = [0, 1].map(|index| numbers.number(|case| of(case).numbers()[index]));
+        match of(numbers.case()) {
+            Aerodynamics::Constant { .. } => Self::Constant { lift_coefficient: first, drag_coefficient: second },
+            Aerodynamics::Ballistic { .. } => Self::Ballistic { ballistic_coefficient: first, lift_to_drag: second },
+            Aerodynamics::MachTable(table) => Self::MachTable(Arc::clone(table)),
+            Aerodynamics::AlphaMachTable(table) => Self::AlphaMachTable(Arc::clone(table)),
+        }
+    }
+}
+
+impl<P: Scalar> Vehicle<P> {
+    /// The vehicle of a case, with its numbers.
+    pub(crate) fn of(numbers: &impl Numbers<P>) -> Self {
+        Self {
+            mass: numbers.number(|case| case.vehicle.mass),
+            reference_area: numbers.number(|case| case.vehicle.reference_area),
+            aerodynamics: Aerodynamics::of(numbers, |case| &case.vehicle.aerodynamics),
+            nose_radius: numbers.case().vehicle.nose_radius,
+        }
+    }
+
+    /// The same in other numbers.
+    pub(crate) fn map<Q>(&self, number: impl Fn(P) -> Q + Copy) -> Vehicle<Q> {
+        let aerodynamics = match &self.aerodynamics {
+            Aerodynamics::Constant { lift_coefficient, drag_coefficient } => Aerodynamics::Constant {
+                lift_coefficient: number(*lift_coefficient),
+                drag_coefficient: number(*drag_coefficient),
+            },
+            Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => Aerodynamics::Ballistic {
+                ballistic_coefficient: number(*ballistic_coefficient),
+                lift_to_drag: number(*lift_to_drag),
+            },
+            Aerodynamics::MachTable(table) => Aerodynamics::MachTable(Arc::clone(table)),
+            Aerodynamics::AlphaMachTable(table) => Aerodynamics::AlphaMachTable(Arc::clone(table)),
+        };
+        let [mass, reference_area] = [self.mass, self.reference_area].map(number);
+        Vehicle { mass, reference_area, aerodynamics, nose_radius: self.nose_radius }
+    }
+
     /// The same vehicle with another mass, kg; its coefficients and area stay, and with them `C_D S` where that is given by a ratio to
     /// the mass.
     #[must_use]
-    pub fn with_mass(&self, mass: f64) -> Self {
+    pub fn with_mass(&self, mass: P) -> Self {
         let aerodynamics = match self.aerodynamics {
             Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag } => {
-                let ballistic_coefficient = ballistic_coefficient * (mass / self.mass);
+                let ballistic_coefficient = ballistic_coefficient * (mass * self.mass.recip());
                 Aerodynamics::Ballistic { ballistic_coefficient, lift_to_drag }
             }
             ref other => other.clone(),
@@ -92,7 +145,9 @@ impl Vehicle {
     pub(crate) fn is_ballistic(&self) -> bool {
         matches!(self.aerodynamics, Aerodynamics::Ballistic { .. })
     }
+}
 
+impl Vehicle {
     /// Whether the vehicle has any lift.
     pub fn has_lift(&self) -> bool {
         self.aerodynamics.has_lift() && (self.is_ballistic() || self.reference_area > 0.0)

@@ -218,13 +218,20 @@ impl Forces {
     pub(crate) fn first_to_turn(&self, next: ModelMode, time: f64, state: &PlanetFixed<f64>) -> Option<Switch> {
         let readings = self.readings(time, state);
         let distance = |switch: &Switch| {
-            let (quantity, boundaries) = self.boundaries(*switch)?;
-            let (now, then) = (self.mode.of(*switch), next.of(*switch));
-            let boundary = boundaries.get(if then > now { now } else { now.checked_sub(1)? })?;
-            (now != then).then(|| (readings[*switch as usize] - boundary).abs() / quantity.resolution())
+            let (quantity, _) = self.boundaries(*switch)?;
+            let boundary = self.boundary_towards(*switch, next)?;
+            Some((readings[*switch as usize] - boundary).abs() / quantity.resolution())
         };
         let turning = Switch::ALL.into_iter().filter_map(|switch| Some((switch, distance(&switch)?)));
         turning.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(switch, _)| switch)
+    }
+
+    /// The boundary that a switch crosses first on the way from the present mode to another; none where it does not turn.
+    pub(crate) fn boundary_towards(&self, switch: Switch, next: ModelMode) -> Option<f64> {
+        let (_, boundaries) = self.boundaries(switch)?;
+        let (now, then) = (self.mode.of(switch), next.of(switch));
+        let boundary = boundaries.get(if then > now { now } else { now.checked_sub(1)? })?;
+        (now != then).then_some(*boundary)
     }
 
     /// Enters the mode of a state and of where it moves next.

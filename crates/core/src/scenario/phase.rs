@@ -1,114 +1,216 @@
-//! A phase of a flight: what flies between two events.
+//! A phase of a flight: what flies between two changes of the vehicle.
 
-use super::Case;
+use std::sync::Arc;
+
+use super::{Case, Numbers};
 use crate::event::{Effect, Engine};
 use crate::motion::{Burn, Forces};
-use crate::parachute::{Canopies, Canopy};
+use crate::parachute::{Canopies, Canopy, Parachute};
 use crate::propulsion::Thrust;
-use crate::vehicle::Vehicle;
+use crate::scalar::Scalar;
+use crate::vehicle::{Aerodynamics, Vehicle};
 
 /// A part of the flight between two changes of the vehicle: its mass, thrust and parachutes from an instant on.
+///
+/// Its numbers are those of [`Numbers`]: plain where it is flown, with derivatives where its sensitivities are followed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Phase {
+pub(crate) struct Phase<P = f64> {
     /// The instant, s.
-    pub since: f64,
+    pub(crate) since: P,
     /// The vehicle, with its mass then.
-    pub vehicle: Vehicle,
+    pub(crate) vehicle: Vehicle<P>,
+    /// The event that gave the vehicle its aerodynamics; none where it has those of the start.
+    pub(crate) aerodynamics_of: Option<usize>,
     /// The thrust that is on, with the propellant that is left then.
-    pub thrust: Option<Thrust>,
+    pub(crate) thrust: Option<Thrust<P>>,
+    /// The event that switched the thrust on.
+    pub(crate) thrust_of: Option<usize>,
     /// The parachutes that are deployed, whether they are open yet or not.
-    pub canopies: Vec<Canopy>,
+    pub(crate) canopies: Vec<Canopy<P>>,
 }
 
-impl Phase {
+impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     /// That in which a flight begins.
-    pub fn first(case: &Case) -> Self {
-        Self { since: 0.0, vehicle: case.vehicle.clone(), thrust: None, canopies: Vec::new() }
+    pub(crate) fn first(numbers: &impl Numbers<P>) -> Self {
+        Self {
+            since: P::zero(),
+            vehicle: Vehicle::of(numbers),
+            aerodynamics_of: None,
+            thrust: None,
+            thrust_of: None,
+            canopies: Vec::new(),
+        }
+    }
+
+    /// The same in other numbers.
+    pub(crate) fn map<Q>(&self, number: impl Fn(P) -> Q + Copy) -> Phase<Q> {
+        Phase {
+            since: number(self.since),
+            vehicle: self.vehicle.map(number),
+            aerodynamics_of: self.aerodynamics_of,
+            thrust: self.thrust.map(|thrust| thrust.map(number)),
+            thrust_of: self.thrust_of,
+            canopies: self.canopies.iter().map(|canopy| canopy.map(number)).collect(),
+        }
     }
 
     /// The mass at a time of the phase, kg.
-    pub fn mass(&self, time: f64) -> f64 {
+    pub(crate) fn mass(&self, time: P) -> P {
         self.vehicle.mass - self.burnt(time)
     }
 
     /// The propellant burnt up to a time of the phase, kg.
-    fn burnt(&self, time: f64) -> f64 {
-        self.thrust.map_or(0.0, |thrust| thrust.mass_flow() * (time - self.since))
+    fn burnt(&self, time: P) -> P {
+        self.thrust.map_or(P::zero(), |thrust| thrust.mass_flow() * (time - self.since))
     }
 
     /// The thrust that is on, with the propellant that is left at a time of the phase.
-    fn thrust_left(&self, time: f64) -> Option<Thrust> {
-        let left = |whole: f64| whole - self.burnt(time);
+    fn thrust_left(&self, time: P) -> Option<Thrust<P>> {
+        let left = |whole: P| whole - self.burnt(time);
         self.thrust.map(|thrust| Thrust { propellant: thrust.propellant.map(left), ..thrust })
     }
 
     /// When the propellant is spent, s.
-    pub fn burnout(&self) -> Option<f64> {
+    pub(crate) fn burnout(&self) -> Option<P> {
         let thrust = self.thrust?;
-        Some(self.since + thrust.propellant? / thrust.mass_flow())
+        Some(self.since + thrust.propellant? * thrust.mass_flow().recip())
     }
 
     /// When nothing at all would be left, s.
-    pub fn last_instant(&self) -> Option<f64> {
+    pub(crate) fn last_instant(&self) -> Option<P> {
         let flow = self.thrust?.mass_flow();
-        (flow > 0.0).then(|| self.since + self.vehicle.mass / flow)
+        (flow.value() > 0.0).then(|| self.since + self.vehicle.mass * flow.recip())
     }
 
     /// When a canopy begins to fill, or is full, s, whichever comes next.
-    pub fn next_inflation(&self) -> Option<f64> {
-        self.canopies.iter().filter_map(Canopy::next_corner).reduce(f64::min)
+    pub(crate) fn next_inflation(&self) -> Option<P> {
+        let corners = self.canopies.iter().filter_map(Canopy::next_corner);
+        corners.min_by(|a, b| a.value().total_cmp(&b.value()))
     }
 
-    /// The phase that begins with the effect of an event of this number at a time.
+    /// The phase that begins with the effect of an event at a time.
     #[must_use]
-    pub fn after(&self, event: usize, effect: &Effect, time: f64) -> Self {
-        let mass = effect.mass.unwrap_or_else(|| self.mass(time));
+    pub(crate) fn after(&self, event: usize, numbers: &impl Numbers<P>, time: P) -> Self {
+        let effect = &numbers.case().events[event].then;
+        let number = |of: fn(&Effect) -> Option<f64>| {
+            of(effect)?;
+            Some(numbers.number(|case| of(&case.events[event].then).unwrap_or_default()))
+        };
+        let mass = number(|effect| effect.mass).unwrap_or_else(|| self.mass(time));
         let Vehicle { reference_area, aerodynamics, .. } = self.vehicle.with_mass(mass);
         let vehicle = Vehicle {
-            reference_area: effect.reference_area.unwrap_or(reference_area),
-            aerodynamics: effect.aerodynamics.clone().unwrap_or(aerodynamics),
+            reference_area: number(|effect| effect.reference_area).unwrap_or(reference_area),
+            aerodynamics: match effect.aerodynamics {
+                Some(_) => Aerodynamics::of(numbers, |case| {
+                    case.events[event].then.aerodynamics.as_ref().unwrap_or(&case.vehicle.aerodynamics)
+                }),
+                None => aerodynamics,
+            },
             mass,
             ..self.vehicle
         };
-        let thrust = match effect.engine {
-            None => self.thrust_left(time),
-            Some(Engine::On(thrust)) => Some(thrust).filter(|thrust| thrust.force != 0.0),
-            Some(Engine::Off) => None,
+        let (thrust, thrust_of) = match effect.engine {
+            None => (self.thrust_left(time), self.thrust_of),
+            Some(Engine::On(Thrust { force: 0.0, .. }) | Engine::Off) => (None, None),
+            Some(Engine::On(Thrust { along, .. })) => {
+                let force = number(|effect| effect.thrust().map(|thrust| thrust.force)).unwrap_or_else(P::zero);
+                let specific_impulse = number(|effect| effect.thrust()?.specific_impulse);
+                let propellant = number(|effect| effect.thrust()?.propellant);
+                (Some(Thrust { along, force, specific_impulse, propellant }), Some(event))
+            }
         };
-        let stays = |canopy: &&Canopy| !effect.release.contains(&canopy.event);
-        let deployed = effect.deploy.map(|parachute| Canopy::new(event, parachute, time));
+        let stays = |canopy: &&Canopy<P>| !effect.release.contains(&canopy.event);
+        let deployed = effect.deploy.map(|_| {
+            let of = |number_of: fn(&Parachute) -> f64| {
+                numbers.number(|case| case.events[event].then.deploy.as_ref().map_or(0.0, number_of))
+            };
+            let parachute = Parachute {
+                drag_area: of(|parachute| parachute.drag_area),
+                inflation_time: of(|parachute| parachute.inflation_time),
+                delay: of(|parachute| parachute.delay),
+            };
+            Canopy::new(event, parachute, time)
+        });
         let canopies = self.canopies.iter().filter(stays).copied().chain(deployed).collect();
-        Self { since: time, vehicle, thrust, canopies }
+        let aerodynamics_of = effect.aerodynamics.as_ref().map(|_| event).or(self.aerodynamics_of);
+        Self { since: time, vehicle, aerodynamics_of, thrust, thrust_of, canopies }
+    }
+
+    /// When time alone changes something next, s: the propellant is spent, or a canopy begins to fill or is full.
+    pub(crate) fn next_change(&self) -> Option<P> {
+        let instants = [self.burnout(), self.next_inflation()].into_iter().flatten();
+        instants.min_by(|a, b| a.value().total_cmp(&b.value()))
+    }
+
+    /// The phase that begins with the [next change](Self::next_change) by time alone.
+    #[must_use]
+    pub(crate) fn after_next_change(&self, time: P) -> Self {
+        match (self.burnout(), self.next_inflation()) {
+            (Some(burnout), Some(inflation)) if inflation.value() < burnout.value() => self.inflated(time),
+            (Some(_), _) => self.burnt_out(time),
+            (None, _) => self.inflated(time),
+        }
     }
 
     /// The phase that begins where a canopy begins to fill, or is full.
-    #[must_use]
-    pub fn inflated(&self, time: f64) -> Self {
+    fn inflated(&self, time: P) -> Self {
         let vehicle = self.vehicle.with_mass(self.mass(time));
         let canopies = self.canopies.iter().map(|canopy| canopy.at(time)).collect();
-        Self { since: time, vehicle, thrust: self.thrust_left(time), canopies }
+        Self { since: time, vehicle, thrust: self.thrust_left(time), canopies, ..self.clone() }
     }
 
     /// The phase that begins where the propellant is spent.
-    #[must_use]
-    pub fn burnt_out(&self, time: f64) -> Self {
-        let spent = self.thrust.and_then(|thrust| thrust.propellant).unwrap_or(0.0);
-        Self { since: time, vehicle: self.vehicle.with_mass(self.vehicle.mass - spent), thrust: None, ..self.clone() }
+    fn burnt_out(&self, time: P) -> Self {
+        let spent = self.thrust.and_then(|thrust| thrust.propellant).unwrap_or_else(P::zero);
+        let vehicle = self.vehicle.with_mass(self.vehicle.mass - spent);
+        Self { since: time, vehicle, thrust: None, thrust_of: None, ..self.clone() }
+    }
+
+    /// The same, with the models that another case has in the place of those from which this phase has its own: tables and axes. The
+    /// numbers stay.
+    pub(crate) fn with_models_of(&self, case: &Case) -> Self {
+        let mut phase = self.clone();
+        let aerodynamics = match self.aerodynamics_of {
+            None => Some(&case.vehicle.aerodynamics),
+            Some(event) => case.events[event].then.aerodynamics.as_ref(),
+        };
+        match aerodynamics {
+            Some(Aerodynamics::MachTable(table)) => {
+                phase.vehicle.aerodynamics = Aerodynamics::MachTable(Arc::clone(table))
+            }
+            Some(Aerodynamics::AlphaMachTable(table)) => {
+                phase.vehicle.aerodynamics = Aerodynamics::AlphaMachTable(Arc::clone(table));
+            }
+            Some(Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. }) | None => {}
+        }
+        phase.vehicle.nose_radius = case.vehicle.nose_radius;
+        let axis = self.thrust_of.and_then(|event| Some(case.events[event].then.thrust()?.along));
+        if let (Some(thrust), Some(along)) = (&mut phase.thrust, axis) {
+            thrust.along = along;
+        }
+        phase
     }
 
     /// The forces on the vehicle.
-    pub fn forces(&self, case: &Case) -> Forces {
+    pub(crate) fn forces(&self, numbers: &impl Numbers<P>) -> Forces<P> {
+        self.forces_by(numbers.case(), numbers)
+    }
+
+    /// The forces on the vehicle by the models of a case, which may be another than that of the numbers.
+    pub(crate) fn forces_by(&self, models_of: &Case, numbers: &impl Numbers<P>) -> Forces<P> {
+        let over_mass = self.vehicle.mass.recip();
         let burn = self.thrust.map(|thrust| Burn {
             along: thrust.along,
             since: self.since,
-            acceleration: thrust.force / self.vehicle.mass,
-            flow: thrust.mass_flow() / self.vehicle.mass,
+            acceleration: thrust.force * over_mass,
+            flow: thrust.mass_flow() * over_mass,
         });
-        let over_mass = self.vehicle.mass.recip();
-        let canopies = Canopies::of(self.canopies.iter().map(|canopy| (*canopy, canopy.deployed)), over_mass);
-        Forces::new(case.models_of(&self.vehicle), case.parameters_of(&self.vehicle))
+        let [lift, drag, bank] = numbers.offsets();
+        // Those of the coefficients belong to the vehicle of the start.
+        let offsets = if self.aerodynamics_of.is_none() { [lift, drag, bank] } else { [P::zero(), P::zero(), bank] };
+        Forces::new(models_of.models_of(&self.vehicle), Case::parameters_of(numbers, &self.vehicle, offsets))
             .of_mass(self.vehicle.mass)
             .burning(burn)
-            .under(canopies)
+            .under(Canopies::of(&self.canopies, over_mass))
     }
 }

@@ -114,7 +114,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if !self.conditions.is_empty() {
             end = end.min(self.conditions.next_time());
         }
-        let of_phase = [self.phase.burnout(), self.phase.last_instant(), self.phase.next_inflation()];
+        let of_phase = [self.phase.next_change(), self.phase.last_instant()];
         of_phase.into_iter().flatten().fold(end, f64::min)
     }
 
@@ -238,12 +238,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Ends the thrust if its propellant is spent, and lets canopies begin to fill, or be full.
     fn change_by_time(&mut self) -> Result<(), SimulationError> {
-        if self.phase.burnout().is_some_and(|burnout| self.time >= burnout) {
-            self.log.warnings.push(Warning::PropellantSpent { time: self.time });
-            self.enter(self.phase.burnt_out(self.time))?;
-        }
-        if self.phase.next_inflation().is_some_and(|inflation| self.time >= inflation) {
-            self.enter(self.phase.inflated(self.time))?;
+        while self.phase.next_change().is_some_and(|change| self.time >= change) {
+            let next = self.phase.after_next_change(self.time);
+            if self.phase.thrust.is_some() && next.thrust.is_none() {
+                self.log.warnings.push(Warning::PropellantSpent { time: self.time });
+            }
+            self.enter(next)?;
         }
         Ok(())
     }
@@ -280,7 +280,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         }
         self.warn_of(event, effect);
         if !effect.is_none() {
-            self.enter(self.phase.after(event, effect, self.time))?;
+            self.enter(self.phase.after(event, self.scenario.case(), self.time))?;
         }
         self.log.event_records.push(EventRecord { event, before, after: self.instant() });
         Ok(())

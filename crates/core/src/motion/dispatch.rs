@@ -1,0 +1,71 @@
+//! The one place that knows which formulations there are, and with how many numbers each holds a state.
+
+use super::{Cartesian, Forces, Formulation, Spherical};
+use crate::integrate::System;
+use crate::scalar::Scalar;
+use crate::scenario::Equations;
+
+/// A formulation in numbers of any type: `f64`, or with derivatives.
+pub(crate) trait FormulationIn<P: Scalar, const N: usize>: Formulation<N> {
+    /// Its equations in these numbers.
+    type Motion: System<P, N>;
+
+    /// Its equations with these forces.
+    fn of(forces: Forces<P>) -> Self::Motion;
+
+    /// Its equations with these forces, without derivatives.
+    fn of_plain(forces: Forces) -> Self;
+}
+
+impl<P: Scalar, const N: usize> FormulationIn<P, N> for Cartesian
+where
+    Self: System<f64, N>,
+    Cartesian<P>: System<P, N>,
+{
+    type Motion = Cartesian<P>;
+
+    fn of(forces: Forces<P>) -> Cartesian<P> {
+        Cartesian(forces)
+    }
+
+    fn of_plain(forces: Forces) -> Self {
+        Self(forces)
+    }
+}
+
+impl<P: Scalar, const N: usize> FormulationIn<P, N> for Spherical
+where
+    Self: System<f64, N>,
+    Spherical<P>: System<P, N>,
+{
+    type Motion = Spherical<P>;
+
+    fn of(forces: Forces<P>) -> Spherical<P> {
+        Spherical(forces)
+    }
+
+    fn of_plain(forces: Forces) -> Self {
+        Self(forces)
+    }
+}
+
+/// A computation that is written once for every formulation.
+pub(crate) trait ForFormulation {
+    /// The numbers in which it needs the equations beside `f64`.
+    type Number: Scalar;
+    /// What it gives.
+    type Output;
+
+    /// The computation with a formulation whose states are `N` numbers.
+    fn with<F: FormulationIn<Self::Number, N>, const N: usize>(self) -> Self::Output;
+}
+
+/// Does a computation with the formulation that a case asks for, whose states hold the heat load or not.
+pub(crate) fn dispatch<C: ForFormulation>(equations: Equations, has_heat_load: bool, computation: C) -> C::Output {
+    match (equations, has_heat_load) {
+        (Equations::Cartesian, false) => computation.with::<Cartesian, 6>(),
+        (Equations::Spherical, false) => computation.with::<Spherical, 6>(),
+        (Equations::Cartesian, true) => computation.with::<Cartesian, 7>(),
+        (Equations::Spherical, true) => computation.with::<Spherical, 7>(),
+    }
+}

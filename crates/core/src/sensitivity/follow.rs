@@ -1,0 +1,421 @@
+//! A flight followed once more in dual numbers, step by step as it was flown.
+//!
+//! The steps are not chosen anew, so that their choice adds nothing. At the ground one step of Newton's method gives the derivatives of the
+//! time of the impact, and with it those of the state there. So it does where something changes on the way: as long as the change comes
+//! later, the flight moves on by the rates from before it.
+
+use std::array::from_fn;
+use std::f64::consts::TAU;
+
+use num_dual::Dual64;
+
+use super::variation::{Dual, Varied};
+use super::varied_forces::{VariedForces, VariedMotion};
+use crate::coordinates::{GreatCircle, PlanetFixed};
+use crate::event::{Condition, Quantity, Trigger};
+use crate::integrate::{System, follow};
+use crate::interrupt::Interrupt;
+use crate::motion::{self, ForFormulation, Forces, FormulationIn, ModelMode, StateRate, moving};
+use crate::scalar::{Scalar, length};
+use crate::scenario::{Case, Numbers, Phase};
+use crate::simulate::SimulationError;
+use crate::trajectory::{EventRecord, StoredStep, Termination, Trajectory};
+
+/// A quantity this near the value of a condition, relative to it or to 1, has met it by moving there and not by a jump.
+const ON_VALUE: f64 = 1e-6;
+
+/// A place of a flight at which its state is wanted with derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// The initial state, before what happens at t = 0.
+    Start,
+    /// At a time inside a step, s, whatever varies.
+    Inside { step: usize, time: f64 },
+    /// Where a step begins, after what changes there; with the change, where that comes sooner or later.
+    StepStart(usize),
+    /// Where a step ends, before what changes there; with the change, where that comes sooner or later.
+    StepEnd(usize),
+    /// At the event of this place in the records, before its effect.
+    Before(usize),
+    /// At the event of this place in the records, after its effect.
+    After(usize),
+    /// Where the flight ends, after what happens there.
+    End,
+}
+
+/// The state at a place, with derivatives.
+#[derive(Clone)]
+pub(super) struct Sample<const W: usize> {
+    pub(super) time: Dual<W>,
+    pub(super) state: PlanetFixed<Dual<W>>,
+    /// J/m²; 0 where it was not followed.
+    pub(super) heat_load: Dual<W>,
+    /// The length of the ground track, m; 0 where it was not followed.
+    pub(super) ground_distance: Dual<W>,
+    pub(super) phase: Phase<Dual<W>>,
+    pub(super) mode: ModelMode,
+}
+
+/// What is to be followed.
+pub(super) struct Follow<'a, const W: usize> {
+    pub(super) flight: &'a Trajectory,
+    pub(super) varied: Varied<'a, W>,
+    /// Which of the variations are of numbers in the models.
+    pub(super) changes_models: &'a [bool],
+    pub(super) places: &'a [Place],
+    /// Whether the ground distance is wanted.
+    pub(super) with_ground_distance: bool,
+    pub(super) interrupt: &'a dyn Interrupt,
+}
+
+impl<const W: usize> ForFormulation for Follow<'_, W> {
+    type Number = Dual<W>;
+    /// The samples of the places, in their order; none of one that the flight does not have.
+    type Output = Result<Vec<Option<Sample<W>>>, SimulationError>;
+
+    fn with<F: FormulationIn<Dual<W>, N>, const N: usize>(self) -> Self::Output {
+        let steps = &self.flight.flown.steps;
+        let mut follower = Follower::<F, N, W>::start(&self);
+        for (index, step) in steps.iter().enumerate() {
+            if self.interrupt.is_raised() {
+                return Err(SimulationError::Interrupted { time: step.start_time() });
+            }
+            follower.change(index, step);
+            follower.take(index, step);
+        }
+        follower.end();
+        Ok(follower.samples)
+    }
+}
+
+/// The state of a flight that is followed, between two steps.
+struct Follower<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> {
+    of: &'a Follow<'a, W>,
+    phase: Phase<Dual<W>>,
+    number: usize,
+    forces: VariedForces<W>,
+    motion: VariedMotion<F, N, W>,
+    state: [Dual<W>; N],
+    ground_distance: Dual<W>,
+    /// The great circle from which ranges are measured.
+    track: GreatCircle<Dual<W>>,
+    /// How much later each event happens as the numbers vary.
+    delays: Vec<Dual<W>>,
+    /// How many of the records have happened.
+    happened: usize,
+    samples: Vec<Option<Sample<W>>>,
+}
+
+impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<'a, F, N, W> {
+    fn start(of: &'a Follow<'a, W>) -> Self {
+        let Follow { flight, varied, changes_models, .. } = of;
+        let start = varied.start();
+        let phase = Phase::first(varied);
+        let mode = flight.flown.start.mode;
+        let forces = VariedForces::new(varied, changes_models, &phase, &flight.flown.phases[0], mode);
+        let mut follower = Self {
+            of,
+            phase,
+            number: 0,
+            motion: forces.motion(),
+            forces,
+            state: F::coordinates(&start, Dual::from(0.0)),
+            ground_distance: Dual::from(0.0),
+            track: GreatCircle::of(&start),
+            delays: vec![Dual::from(0.0); flight.case.events.len()],
+            happened: 0,
+            samples: vec![None; of.places.len()],
+        };
+        follower.keep(Place::Start, Dual::from(0.0));
+        follower
+    }
+
+    /// Keeps the present state for all that want that of a place.
+    fn keep(&mut self, place: Place, time: Dual<W>) {
+        let wanted = self.of.places.iter().enumerate().filter(|(_, wanted)| **wanted == place);
+        for (index, _) in wanted {
+            self.samples[index] = Some(Sample {
+                time,
+                state: F::planet_fixed(&self.state),
+                heat_load: self.state.get(6).copied().unwrap_or_else(num_traits::Zero::zero),
+                ground_distance: self.ground_distance,
+                phase: self.phase.clone(),
+                mode: self.forces.mode(),
+            });
+        }
+    }
+
+    /// Follows a step, and keeps what is wanted inside.
+    fn take(&mut self, index: usize, step: &StoredStep) {
+        let (time, length) = (step.start_time(), step.end_time() - step.start_time());
+        let start = (self.state, self.ground_distance);
+        for place in self.of.places {
+            if let Place::Inside { step, time: inside } = *place
+                && step == index
+            {
+                self.advance(time, inside - time);
+                self.keep(*place, Dual::from(inside));
+                (self.state, self.ground_distance) = start;
+            }
+        }
+        self.advance(time, length);
+    }
+
+    fn advance(&mut self, time: f64, length: f64) {
+        if self.of.with_ground_distance {
+            for (node, weight) in GAUSS {
+                let inside = follow(&self.motion, &self.state, time, length * node);
+                self.ground_distance += self.ground_speed(&inside) * (weight * length);
+            }
+        }
+        self.state = follow(&self.motion, &self.state, time, length);
+    }
+
+    /// The rate of the ground distance, m/s.
+    fn ground_speed(&self, state: &[Dual<W>; N]) -> Dual<W> {
+        let PlanetFixed { position, velocity } = F::planet_fixed(state);
+        let over_radius = length(&position).recip();
+        let radius = |forces: &Forces| forces.planet().equatorial_radius();
+        let radius = self.forces.with_models(Dual::from(radius(&self.forces.plain)), radius);
+        length(&position.cross(&velocity)) * over_radius * over_radius * radius
+    }
+
+    /// Lets happen what happened where a step begins, sooner or later as the numbers vary.
+    fn change(&mut self, index: usize, step: &StoredStep) {
+        let time = step.start_time();
+        let records = &self.of.flight.flown.event_records[self.happened..];
+        let now = records.iter().take_while(|record| record.before.time <= time).count();
+        if (step.phase, step.mode) == (self.number, self.forces.mode()) && now == 0 {
+            if index > 0 {
+                self.keep(Place::StepEnd(index - 1), Dual::from(time));
+            }
+            self.keep(Place::StepStart(index), Dual::from(time));
+            return;
+        }
+        let records = &records[..now];
+        let rates = self.motion.derivative(time.into(), &self.state);
+        let delay = self.turning_delay(records, step.mode, time, &rates);
+        // During the delay the rates before the change hold in place of those after it.
+        self.move_by(&rates, delay);
+        let instant = delay + time;
+        if index > 0 {
+            self.keep(Place::StepEnd(index - 1), instant);
+        }
+        self.let_happen(records, delay);
+        self.enter(step.phase, delay, step.mode);
+        self.keep(Place::StepStart(index), instant);
+        let next = self.motion.derivative(time.into(), &self.state);
+        self.move_by(&next, -delay);
+    }
+
+    fn move_by(&mut self, rates: &[Dual<W>; N], delay: Dual<W>) {
+        if self.of.with_ground_distance {
+            self.ground_distance += self.ground_speed(&self.state) * delay;
+        }
+        self.state = from_fn(|i| self.state[i] + rates[i] * delay);
+    }
+
+    /// Lets events happen in the present state, as much later.
+    fn let_happen(&mut self, records: &[EventRecord], delay: Dual<W>) {
+        for record in records {
+            let place = self.happened;
+            let instant = delay + record.before.time;
+            self.delays[record.event] = delay;
+            self.change_by_time(record.before.phase, delay);
+            self.keep(Place::Before(place), instant);
+            self.apply_impulse(record, delay);
+            if !self.of.flight.case.events[record.event].then.is_none() {
+                self.phase = self.phase.after(record.event, &self.of.varied, instant);
+                self.number = record.after.phase;
+            }
+            self.happened += 1;
+            if self.of.places.contains(&Place::After(place)) {
+                self.enter(record.after.phase, delay, record.after.mode);
+                self.keep(Place::After(place), instant);
+            }
+        }
+    }
+
+    /// Enters a phase, to which time alone leads from the present one, and a mode.
+    fn enter(&mut self, number: usize, delay: Dual<W>, mode: ModelMode) {
+        self.change_by_time(number, delay);
+        let Follow { flight, varied, changes_models, .. } = self.of;
+        self.forces = VariedForces::new(varied, changes_models, &self.phase, &flight.flown.phases[number], mode);
+        self.motion = self.forces.motion();
+    }
+
+    /// Goes on to the phase of a number to which time alone leads: propellant is spent, canopies begin to fill or are full.
+    fn change_by_time(&mut self, number: usize, delay: Dual<W>) {
+        while self.number < number {
+            self.number += 1;
+            let since = self.of.flight.flown.phases[self.number].since;
+            self.phase = self.phase.after_next_change(delay + since);
+        }
+    }
+
+    /// Changes the velocity by the impulse of an event, if it has one.
+    fn apply_impulse(&mut self, record: &EventRecord, delay: Dual<W>) {
+        let Follow { flight, varied, .. } = self.of;
+        let Some(impulse) = flight.case.events[record.event].then.impulse else { return };
+        let time = record.before.time;
+        let state = F::planet_fixed(&self.state);
+        let of_event = |case: &Case| case.events[record.event].then.impulse;
+        let speed_change = varied.number(|case| of_event(case).map_or(0.0, |impulse| impulse.speed_change));
+        let direction = motion::along(impulse.along, &flight.case.planet, delay + time, &state);
+        // The axis itself may vary, and the rotation that turns it.
+        let plain = PlanetFixed { position: state.position.map(|x| x.re), velocity: state.velocity.map(|x| x.re) };
+        let component = |index: usize| {
+            varied.number(|case| {
+                let along = of_event(case).map_or(impulse.along, |impulse| impulse.along);
+                motion::along(along, &case.planet, time, &plain)[index]
+            })
+        };
+        let turned = nalgebra::Vector3::from_fn(|index, _| {
+            let component = component(index);
+            component - component.re
+        });
+        let velocity = state.velocity + (direction + turned) * speed_change;
+        let heat_load = self.state.get(6).copied().unwrap_or_else(num_traits::Zero::zero);
+        self.state = F::coordinates(&PlanetFixed { velocity, ..state }, heat_load);
+    }
+
+    /// The end of the flight, with what happens there.
+    fn end(&mut self) {
+        let flown = &self.of.flight.flown;
+        let time = flown.end.time;
+        let rates = self.motion.derivative(time.into(), &self.state);
+        let delay = self.final_delay(&rates);
+        self.move_by(&rates, delay);
+        if let Some(last) = flown.steps.len().checked_sub(1) {
+            self.keep(Place::StepEnd(last), delay + time);
+        }
+        let records = &flown.event_records[self.happened..];
+        self.let_happen(records, delay);
+        self.enter(flown.end.phase, delay, flown.end.mode);
+        self.keep(Place::End, delay + time);
+    }
+
+    /// How much later the flight ends as the numbers vary, s.
+    fn final_delay(&self, rates: &[Dual<W>; N]) -> Dual<W> {
+        let Follow { flight, varied, .. } = self.of;
+        let (case, time) = (&flight.case, flight.flown.end.time);
+        match flight.flown.arrival.termination {
+            Termination::TimeLimit => {
+                let limit = varied.number(|case| case.stop.time);
+                limit - limit.re
+            }
+            Termination::SurfaceImpact | Termination::StopAltitude => {
+                let value = varied.number(|case| case.stop.altitude);
+                self.condition_delay(Quantity::Altitude, value, time, rates)
+            }
+            Termination::AtmosphereExit => {
+                let value = varied.number(|case| case.stop.ceiling.unwrap_or_default());
+                self.condition_delay(Quantity::Altitude, value, time, rates)
+            }
+            Termination::Condition(index) => match case.stop.when[index] {
+                Trigger::Condition(Condition { quantity, .. }) => {
+                    let value = varied.number(|case| value_of(&case.stop.when[index]));
+                    self.condition_delay(quantity, value, time, rates)
+                }
+                Trigger::After { event, .. } => {
+                    self.delays[event] + self.later(|case| value_of(&case.stop.when[index]))
+                }
+            },
+        }
+    }
+
+    /// By how much a time of the case moves as the numbers vary, s.
+    fn later(&self, of: impl Fn(&Case) -> f64) -> Dual<W> {
+        let time = self.of.varied.number(of);
+        time - time.re
+    }
+
+    /// The delay of a change of the motion as the numbers vary, s.
+    fn turning_delay(&self, now: &[EventRecord], next: ModelMode, time: f64, rates: &[Dual<W>; N]) -> Dual<W> {
+        let Follow { flight, varied, .. } = self.of;
+        let delay_of = |record: &EventRecord| {
+            let value = |case: &Case| value_of(&case.events[record.event].when);
+            match flight.case.events[record.event].when {
+                Trigger::Condition(condition) => {
+                    let delay = || self.condition_delay(condition.quantity, varied.number(value), time, rates);
+                    self.meets(&condition, time).then(delay)
+                }
+                Trigger::After { event, .. } => Some(self.delays[event] + self.later(value)),
+            }
+        };
+        if let Some(delay) = now.iter().find_map(delay_of) {
+            return delay;
+        }
+        if let Some(change) = self.phase.next_change().filter(|change| change.re <= time) {
+            return change - change.re;
+        }
+        let plain = &self.forces.plain;
+        let values = F::planet_fixed(&self.state.map(|number| number.re));
+        let Some(switch) = plain.first_to_turn(next, time, &values) else { return Dual::from(0.0) };
+        let moving = self.moving(time, rates);
+        let rate = plain.readings(Dual64::new(time, 1.0), &moving.state)[switch as usize].eps;
+        let reading = self.forces.dual.readings(Dual::from(time), &F::planet_fixed(&self.state))[switch as usize];
+        let reading = self.forces.with_models(reading, |forces| forces.readings(time, &values)[switch as usize]);
+        delay(reading - self.forces.boundary(switch, next), rate)
+    }
+
+    /// Whether a condition is met at a time, s, by moving; one that was met by a jump was so because of another.
+    fn meets(&self, Condition { quantity, value, .. }: &Condition, time: f64) -> bool {
+        let mut off = self.quantity(*quantity, time).re - *value;
+        if *quantity == Quantity::Downrange {
+            let around = TAU * self.of.flight.case.planet.equatorial_radius();
+            off -= around * (off / around).round();
+        }
+        off.abs() <= ON_VALUE * value.abs().max(1.0)
+    }
+
+    /// How much later a quantity passes a value, which may vary as well.
+    fn condition_delay(&self, quantity: Quantity, value: Dual<W>, time: f64, rates: &[Dual<W>; N]) -> Dual<W> {
+        if quantity == Quantity::Time {
+            return value - value.re;
+        }
+        let track = self.track.map(|number| Dual64::from(number.re));
+        let rate = self.forces.plain.quantity(quantity, &self.moving(time, rates), &track).eps;
+        delay(self.quantity(quantity, time) - value, rate)
+    }
+
+    /// A quantity at a time, s, of the present state.
+    fn quantity(&self, quantity: Quantity, time: f64) -> Dual<W> {
+        let at = StateRate::at::<F, N>(Dual::from(time), &self.state);
+        let plain_at = StateRate::at::<F, N>(time, &self.state.map(|number| number.re));
+        let track = self.track.map(|number| number.re);
+        let number = self.forces.dual.quantity(quantity, &at, &self.track);
+        self.forces.with_models(number, |forces| forces.quantity(quantity, &plain_at, &track))
+    }
+
+    /// The present state without derivatives, moving along the flow.
+    fn moving(&self, time: f64, rates: &[Dual<W>; N]) -> StateRate {
+        let values = moving(&self.state.map(|number| number.re), &rates.map(|rate| rate.re));
+        StateRate::at::<F, N>(Dual64::new(time, 1.0), &values)
+    }
+}
+
+/// The nodes and weights of the quadrature of Gauss and Legendre with five points, over [0, 1].
+///
+/// # Reference
+/// M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 1964, table 25.4.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668, 0.118_463_442_528_094_54),
+    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
+    (0.5, 0.284_444_444_444_444_44),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
+];
+
+/// The number of a trigger: the value of its condition, or its delay.
+fn value_of(trigger: &Trigger) -> f64 {
+    match *trigger {
+        Trigger::Condition(Condition { value, .. }) => value,
+        Trigger::After { delay, .. } => delay,
+    }
+}
+
+/// How much later a quantity passes the value that it has: a step of Newton's method, -q/q̇, of value zero.
+fn delay<const W: usize>(quantity: Dual<W>, rate: f64) -> Dual<W> {
+    -(quantity - quantity.re) * rate.recip()
+}

@@ -1,0 +1,332 @@
+//! Outputs of a flight, and their slopes by numbers of its case.
+
+use super::follow::{Follow, Place, Sample};
+use super::variation::{CENTRAL, Dual, Node, Variation, Varied};
+use crate::coordinates::PlanetFixed;
+use crate::interrupt::Interrupt;
+use crate::motion::{Forces, dispatch};
+use crate::simulate::SimulationError;
+use crate::trajectory::{FlightPoint, Origin, Trajectory};
+
+/// When an output is taken from a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Moment {
+    /// At the start, before what happens then.
+    Start,
+    /// At the end, after what happens then.
+    End,
+    /// At a time, s, whatever varies.
+    Time(f64),
+    /// At the event of this place in the list of the case.
+    Event {
+        /// The place of the event.
+        event: usize,
+        /// Whether after its effect.
+        after: bool,
+    },
+    /// Where the output is greatest over the flight.
+    Peak,
+    /// Where the output is least over the flight.
+    Lowest,
+}
+
+/// The case from which an output is computed: that of the flight, or one in which the number of a variation is moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moved {
+    /// The place of the variation.
+    pub variation: usize,
+    /// By how much its number is moved, in its own unit.
+    pub offset: f64,
+}
+
+/// An output of a flight: a number of its state at a moment.
+pub struct Output<'a> {
+    /// The moment.
+    pub at: Moment,
+    /// The number; none where the state has none. What it takes from the case itself and not from the state, it takes from the moved one
+    /// where there is one.
+    pub value: &'a dyn Fn(&FlightPoint, Option<Moved>) -> Option<f64>,
+    /// The turn of a number that is an angle, in its unit, by which its differences are taken on the circle.
+    pub turn: Option<f64>,
+}
+
+/// An output, and how it depends on the numbers that vary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slopes {
+    /// The time of its moment, s; none where the flight has none: an event that did not happen, a time after its end.
+    pub time: Option<f64>,
+    /// The output; none where it has none.
+    pub value: Option<f64>,
+    /// Its derivative by each of the variations, the change of its moment included; not a finite number where there is none.
+    pub slopes: Vec<f64>,
+}
+
+/// The derivatives of outputs of a flight by the numbers that vary.
+///
+/// The derivative of a peak is that of the quantity at its time: where a smooth peak lies does not matter to first order.
+///
+/// # Errors
+/// When the flag is raised, at which it looks before every step.
+pub fn slopes(
+    flight: &Trajectory,
+    variations: &[Variation],
+    outputs: &[Output],
+    interrupt: &dyn Interrupt,
+) -> Result<Vec<Slopes>, SimulationError> {
+    let places: Vec<Option<Place>> =
+        outputs.iter().map(|output| place(flight, output, interrupt)).collect::<Result<_, _>>()?;
+    let mut slopes: Vec<Slopes> = outputs
+        .iter()
+        .map(|_| Slopes { time: None, value: None, slopes: Vec::with_capacity(variations.len()) })
+        .collect();
+    let mut first = 0;
+    loop {
+        let rest = &variations[first..];
+        // As wide as what is left, in steps for which the program has code.
+        first += match rest.len() {
+            0..=2 => chunk::<2>(flight, first, rest, outputs, &places, &mut slopes, interrupt)?,
+            3..=4 => chunk::<4>(flight, first, rest, outputs, &places, &mut slopes, interrupt)?,
+            _ => chunk::<12>(flight, first, rest, outputs, &places, &mut slopes, interrupt)?,
+        };
+        if first == variations.len() {
+            return Ok(slopes);
+        }
+    }
+}
+
+/// Adds the slopes by the first `W` of some variations, of which the first has this place among all; returns how many they are.
+fn chunk<const W: usize>(
+    flight: &Trajectory,
+    first: usize,
+    variations: &[Variation],
+    outputs: &[Output],
+    places: &[Option<Place>],
+    slopes: &mut [Slopes],
+    interrupt: &dyn Interrupt,
+) -> Result<usize, SimulationError> {
+    let variations = &variations[..variations.len().min(W)];
+    let case = &flight.case;
+    let changes_models: Vec<bool> = variations.iter().map(|variation| variation.changes_models(case)).collect();
+    let wanted: Vec<Place> = places.iter().map(|place| place.unwrap_or(Place::End)).collect();
+    let follow = Follow::<W> {
+        flight,
+        varied: Varied { case, variations },
+        changes_models: &changes_models,
+        places: &wanted,
+        with_ground_distance: true,
+        interrupt,
+    };
+    let samples = dispatch(case.solver.equations, case.heating.is_some(), follow)?;
+    let varied = Varied::<W> { case, variations };
+    for (((sample, place), output), row) in samples.iter().zip(places).zip(outputs).zip(slopes) {
+        let Some(sample) = sample.as_ref().filter(|_| place.is_some()) else {
+            row.slopes.extend(variations.iter().map(|_| f64::NAN));
+            continue;
+        };
+        let near = Near::new(flight, &varied, first, sample);
+        row.time = Some(sample.time.re);
+        row.value = near.value(output);
+        row.slopes.extend(variations.iter().enumerate().map(|(index, variation)| {
+            if variation.changes_phases(case) { f64::NAN } else { near.slope(output, index) }
+        }));
+    }
+    Ok(variations.len())
+}
+
+/// The states near a sample, by which an output has its slopes.
+struct Near<'a, const W: usize> {
+    flight: &'a Trajectory,
+    varied: &'a Varied<'a, W>,
+    /// The place of the first variation among all.
+    first: usize,
+    sample: &'a Sample<W>,
+    /// The point of the sample itself.
+    point: FlightPoint,
+    forces: Forces,
+}
+
+/// The part of its own size by which a state is moved to find the slope of an output: differences of fourth order then are exact to ten
+/// digits even of a density, whose scale is a thousandth of the radius.
+const MOVED: f64 = 1e-5;
+
+impl<'a, const W: usize> Near<'a, W> {
+    fn new(flight: &'a Trajectory, varied: &'a Varied<'a, W>, first: usize, sample: &'a Sample<W>) -> Self {
+        let Sample { time, state, heat_load, phase, mode, .. } = sample;
+        let phase = phase.map(|number| number.re);
+        let mut forces = phase.forces(&flight.case);
+        forces.enter(*mode);
+        let heat_load = flight.case.heating.map(|_| heat_load.re);
+        let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &plain(state, |x| x.re), heat_load);
+        Self { flight, varied, first, sample, point, forces }
+    }
+
+    /// The output itself.
+    fn value(&self, output: &Output) -> Option<f64> {
+        (output.value)(&self.point, None)
+    }
+
+    /// The derivative of the output by a variation: by the way it moves the state, and by the numbers and the models that it moves.
+    fn slope(&self, output: &Output, variation: usize) -> f64 {
+        let Some(value) = self.value(output) else { return f64::NAN };
+        let difference = |moved: Option<f64>| {
+            let difference = moved.map_or(f64::NAN, |moved| moved - value);
+            output.turn.map_or(difference, |turn| difference - turn * (difference / turn).round())
+        };
+        let by_state = self.step(variation).map_or(0.0, |step| {
+            let moved = |(times, weight): (f64, f64)| {
+                weight * difference((output.value)(&self.with_state_moved(variation, times * step), None))
+            };
+            CENTRAL.into_iter().map(moved).sum::<f64>() / step
+        });
+        let moved = |node: &Node| {
+            let moved = Moved { variation: self.first + variation, offset: node.offset };
+            let point = self.with_numbers_moved(variation, node);
+            node.weight * difference((output.value)(&point, Some(moved)))
+        };
+        by_state + self.varied.variations[variation].nodes().iter().map(moved).sum::<f64>()
+    }
+
+    /// The point where the number of a variation has moved the state, and that from which the flight sets out, by an offset.
+    fn with_state_moved(&self, variation: usize, offset: f64) -> FlightPoint {
+        let Sample { time, state, heat_load, ground_distance, phase, .. } = self.sample;
+        let moved = |number: Dual<W>| number.re + offset * slope(&number, variation);
+        let origin = Origin::of(&plain(&self.varied.start(), moved));
+        let heat_load = self.flight.case.heating.map(|_| moved(*heat_load));
+        let phase = phase.map(|number| number.re);
+        let state = plain(state, moved);
+        let point = self.flight.point_from(&origin, &self.forces, &phase, moved(*time), &state, heat_load);
+        let ground_distance = self.point.ground_distance + offset * slope(ground_distance, variation);
+        FlightPoint { ground_distance, ..point }
+    }
+
+    /// The point where the number of a variation is moved in the vehicle and in the models.
+    fn with_numbers_moved(&self, variation: usize, node: &Node) -> FlightPoint {
+        let Sample { time, state, heat_load, phase, mode, .. } = self.sample;
+        let phase = phase.map(|number| number.re + node.offset * slope(&number, variation));
+        let mut forces = phase.with_models_of(&node.case).forces(&node.case);
+        forces.enter(*mode);
+        let heat_load = self.flight.case.heating.map(|_| heat_load.re);
+        let state = plain(state, |number| number.re);
+        self.flight.point_from(&self.flight.origin, &forces, &phase, time.re, &state, heat_load)
+    }
+
+    /// The offset of a variation that moves the state by a small part of its size; none where it does not move it.
+    fn step(&self, variation: usize) -> Option<f64> {
+        let Sample { time, state, heat_load, ground_distance, .. } = self.sample;
+        let PlanetFixed { position, velocity } = plain(state, |number| number.re);
+        let rates = plain(state, |number| slope(&number, variation));
+        let start = plain(&self.varied.start(), |number| slope(&number, variation));
+        let radius = position.norm();
+        // The least speed that counts, where the vehicle is nearly at rest.
+        let least = 1e-3 * (self.flight.case.planet.gravitational_parameter / radius).sqrt();
+        let speed = velocity.norm().max(least);
+        let start_speed = self.flight.case.initial_state.velocity.norm().max(least);
+        let sizes = [
+            rates.position.norm() / radius,
+            rates.velocity.norm() / speed,
+            slope(time, variation).abs() * speed / radius,
+            slope(heat_load, variation).abs() / heat_load.re.abs().max(1.0),
+            slope(ground_distance, variation).abs() / radius,
+            start.position.norm() / radius,
+            start.velocity.norm() / start_speed,
+        ];
+        let size = sizes.into_iter().fold(0.0, f64::max);
+        (size > 0.0).then(|| MOVED / size)
+    }
+}
+
+/// A derivative of a number.
+fn slope<const W: usize>(number: &Dual<W>, variation: usize) -> f64 {
+    number.eps.0.map_or(0.0, |slopes| slopes[variation])
+}
+
+/// A state without derivatives.
+fn plain<const W: usize>(state: &PlanetFixed<Dual<W>>, number: impl Fn(Dual<W>) -> f64) -> PlanetFixed<f64> {
+    PlanetFixed { position: state.position.map(&number), velocity: state.velocity.map(&number) }
+}
+
+/// Where an output is taken from the flight; none where the flight has no such moment.
+fn place(flight: &Trajectory, output: &Output, interrupt: &dyn Interrupt) -> Result<Option<Place>, SimulationError> {
+    let steps = &flight.flown.steps;
+    Ok(match output.at {
+        Moment::Start => Some(Place::Start),
+        Moment::End => Some(Place::End),
+        Moment::Event { event, after } => {
+            let record = flight.flown.event_records.iter().position(|record| record.event == event);
+            record.map(if after { Place::After } else { Place::Before })
+        }
+        Moment::Time(time) => {
+            let step = steps.partition_point(|step| step.end_time() <= time);
+            let inside = |step: usize| (time < flight.end_time()).then_some(Place::Inside { step, time });
+            if time <= 0.0 { Some(Place::Start) } else { inside(step) }
+        }
+        Moment::Peak => extremum(flight, &|point| (output.value)(point, None), interrupt)?,
+        Moment::Lowest => extremum(flight, &|point| Some(-(output.value)(point, None)?), interrupt)?,
+    })
+}
+
+/// Points of a step at which a quantity is looked at, its ends included: between two of them it is taken to turn no more than once.
+const LOOKS: usize = 9;
+/// The golden section's part.
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
+/// Sections by which the place of a peak is narrowed: to a millionth of the part between two looks, where a peak is flat to rounding.
+const SECTIONS: usize = 30;
+
+/// Where a quantity is greatest; none where it is nowhere a number.
+fn extremum(
+    flight: &Trajectory,
+    value: &dyn Fn(&FlightPoint) -> Option<f64>,
+    interrupt: &dyn Interrupt,
+) -> Result<Option<Place>, SimulationError> {
+    let steps = &flight.flown.steps;
+    let mut greatest: Option<(f64, Place)> = None;
+    let mut offer = |at: Option<f64>, place: Place| {
+        if let Some(at) = at.filter(|at| greatest.is_none_or(|(greatest, _)| *at > greatest)) {
+            greatest = Some((at, place));
+        }
+    };
+    for (index, step) in steps.iter().enumerate() {
+        if interrupt.is_raised() {
+            return Err(SimulationError::Interrupted { time: step.start_time() });
+        }
+        let inside = flight.inside(step);
+        let at = |part: f64| value(&inside.point(part));
+        #[expect(clippy::cast_precision_loss, reason = "a handful")]
+        let part = |look: usize| look as f64 / (LOOKS - 1) as f64;
+        let looks: [Option<f64>; LOOKS] = std::array::from_fn(|look| at(part(look)));
+        offer(looks[0], Place::StepStart(index));
+        for look in 1..LOOKS - 1 {
+            let [before, here, after] = [looks[look - 1], looks[look], looks[look + 1]];
+            if here.is_some() && here >= before && here >= after {
+                let (part, value) = golden_section(&at, [part(look - 1), part(look + 1)]);
+                offer(value, Place::Inside { step: index, time: step.time(part) });
+            }
+        }
+        offer(looks[LOOKS - 1], Place::StepEnd(index));
+    }
+    if steps.is_empty() {
+        return Ok(Some(Place::End));
+    }
+    Ok(greatest.map(|(_, place)| place))
+}
+
+/// The greatest value of a function that turns once in a range, and where it is.
+fn golden_section(at: &impl Fn(f64) -> Option<f64>, [mut low, mut high]: [f64; 2]) -> (f64, Option<f64>) {
+    let place = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+    let [mut left, mut right] = place(low, high);
+    let [mut at_left, mut at_right] = [at(left), at(right)];
+    for _ in 0..SECTIONS {
+        if at_left > at_right {
+            high = right;
+            (right, at_right) = (left, at_left);
+            left = place(low, high)[0];
+            at_left = at(left);
+        } else {
+            low = left;
+            (left, at_left) = (right, at_right);
+            right = place(low, high)[1];
+            at_right = at(right);
+        }
+    }
+    if at_left > at_right { (left, at_left) } else { (right, at_right) }
+}

@@ -1,0 +1,164 @@
+//! A number of a case that varies, and the numbers of a flight with their derivatives by it.
+
+use nalgebra::SVector;
+use num_dual::{Derivative, DualSVec64};
+
+use crate::coordinates::PlanetFixed;
+use crate::event::Event;
+use crate::motion::Models;
+use crate::propulsion::ThrustAxis;
+use crate::scenario::{Case, Numbers};
+use crate::vehicle::{Aerodynamics, Vehicle};
+
+/// A number with `W` derivatives.
+pub(super) type Dual<const W: usize> = DualSVec64<W>;
+
+/// A number of a case that varies: the case with the number moved a little, several times.
+///
+/// What a flight takes from its case has its derivative by this number from these cases, by differences of fourth order: exact to
+/// rounding where it is a polynomial of the number up to degree four, as masses, coefficients, thrusts, times and altitudes are, and good to twelve
+/// digits in the steps that are meant here, a thousandth of the size of the number.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    nodes: Vec<Node>,
+    offsets: [f64; 3],
+}
+
+/// A case whose number is moved.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// By how much the number is moved, in its own unit.
+    pub(super) offset: f64,
+    /// The weight of what is different in the derivative.
+    pub(super) weight: f64,
+    pub(super) case: Case,
+}
+
+/// Of differences about the number, in steps.
+pub(super) const CENTRAL: [(f64, f64); 4] =
+    [(-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0)];
+/// Of differences on one side of it; what is left out belongs to the number itself.
+const ONE_SIDED: [(f64, f64); 4] = [(1.0, 4.0), (2.0, -3.0), (3.0, 4.0 / 3.0), (4.0, -0.25)];
+
+impl Variation {
+    /// A number that is moved in steps of about `step`, in its own unit; `moved` gives the case with the number moved by an offset, or none
+    /// where there is no such case: beyond a bound, or where an order would change. The steps then are smaller, or on one side.
+    /// None where the number cannot be moved at all.
+    pub fn new(step: f64, moved: impl Fn(f64) -> Option<Case>) -> Option<Self> {
+        let steps = [1.0, 0.1, 1e-2].map(|part| step * part);
+        let ways = steps.iter().flat_map(|step| [(&CENTRAL, *step), (&ONE_SIDED, *step), (&ONE_SIDED, -*step)]);
+        let node = |(times, weight): (f64, f64), step: f64| {
+            let offset = times * step;
+            Some(Node { offset, weight: weight / step, case: moved(offset)? })
+        };
+        let nodes = |(stencil, step): (&[(f64, f64); 4], f64)| {
+            stencil.iter().map(|of_node| node(*of_node, step)).collect::<Option<Vec<_>>>()
+        };
+        let nodes = ways.map(nodes).find_map(|nodes| nodes)?;
+        Some(Self { nodes, offsets: [0.0; 3] })
+    }
+
+    /// What a flight adds to the lift and drag coefficients of its table and to its bank angle varies, of which none has a number in the case.
+    pub(super) fn of_offset(index: usize) -> Self {
+        let mut offsets = [0.0; 3];
+        offsets[index] = 1.0;
+        Self { nodes: Vec::new(), offsets }
+    }
+
+    pub(super) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The derivative of a number of the case.
+    fn slope(&self, case: &Case, of: impl Fn(&Case) -> f64) -> f64 {
+        // Less the number itself, so that what does not vary has a slope of exactly zero.
+        let number = of(case);
+        self.nodes.iter().map(|node| node.weight * (of(&node.case) - number)).sum()
+    }
+
+    /// Whether the flight has other phases as soon as the number is moved, so that there is no derivative: a thrust or a parachute that
+    /// is none, or a canopy that opens at once.
+    pub(super) fn changes_phases(&self, case: &Case) -> bool {
+        let kinds = |case: &Case| {
+            let of_event = |event: &Event| {
+                let thrusts = event.then.thrust().is_some_and(|thrust| thrust.force != 0.0);
+                let opens = event.then.deploy.map(|it| (it.drag_area > 0.0, it.inflation_time > 0.0));
+                let at_once = event.then.deploy.is_some_and(|it| it.inflation_time == 0.0 && it.delay == 0.0);
+                (thrusts, opens, at_once)
+            };
+            case.events.iter().map(of_event).collect::<Vec<_>>()
+        };
+        let of_flight = kinds(case);
+        self.nodes.iter().any(|node| kinds(&node.case) != of_flight)
+    }
+
+    /// Whether more varies than numbers that a phase of the flight takes from its case: what is in the models has its derivatives by
+    /// differences.
+    pub fn changes_models(&self, case: &Case) -> bool {
+        let models = ModelsOfFlight::of(case);
+        self.nodes.iter().any(|node| ModelsOfFlight::of(&node.case) != models)
+    }
+}
+
+/// What a flight takes from its case that is not a number: the models, and what events put in their place.
+#[derive(PartialEq)]
+struct ModelsOfFlight {
+    of_start: Models,
+    /// Of each event its aerodynamics as far as they are tables, and the axes of its thrust and impulse.
+    of_events: Vec<(Option<Models>, [Option<ThrustAxis>; 2])>,
+}
+
+impl ModelsOfFlight {
+    fn of(case: &Case) -> Self {
+        let of_events = case.events.iter().map(|event| {
+            let with = |aerodynamics: &Aerodynamics| {
+                case.models_of(&Vehicle { aerodynamics: aerodynamics.clone(), ..case.vehicle.clone() })
+            };
+            let axes =
+                [event.then.thrust().map(|thrust| thrust.along), event.then.impulse.map(|impulse| impulse.along)];
+            (event.then.aerodynamics.as_ref().map(with), axes)
+        });
+        Self { of_start: case.models(), of_events: of_events.collect() }
+    }
+}
+
+/// A case of which up to `W` numbers vary.
+pub(super) struct Varied<'a, const W: usize> {
+    pub(super) case: &'a Case,
+    pub(super) variations: &'a [Variation],
+}
+
+impl<const W: usize> Varied<'_, W> {
+    /// A number with these derivatives.
+    fn dual(value: f64, slopes: [f64; W]) -> Dual<W> {
+        if slopes.iter().all(|slope| *slope == 0.0) {
+            return Dual::from(value);
+        }
+        Dual::new(value, Derivative::some(SVector::from(slopes)))
+    }
+
+    /// The initial state.
+    pub(super) fn start(&self) -> PlanetFixed<Dual<W>> {
+        let component = |index: usize| self.number(move |case| <[f64; 6]>::from(case.initial_state)[index]);
+        PlanetFixed::from(std::array::from_fn(component))
+    }
+
+    /// A number of each variation; 0 where there are fewer.
+    pub(super) fn each(&self, of: impl Fn(&Variation) -> f64) -> [f64; W] {
+        std::array::from_fn(|i| self.variations.get(i).map_or(0.0, &of))
+    }
+}
+
+impl<const W: usize> Numbers<Dual<W>> for Varied<'_, W> {
+    fn case(&self) -> &Case {
+        self.case
+    }
+
+    fn number(&self, of: impl Fn(&Case) -> f64) -> Dual<W> {
+        Self::dual(of(self.case), self.each(|variation| variation.slope(self.case, &of)))
+    }
+
+    fn offsets(&self) -> [Dual<W>; 3] {
+        [0, 1, 2].map(|index| Self::dual(0.0, self.each(|variation| variation.offsets[index])))
+    }
+}
