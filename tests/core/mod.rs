@@ -18,6 +18,7 @@ mod parachutes;
 mod phases;
 mod pitfalls;
 mod properties;
+mod sensitivities;
 mod propulsion;
 mod tables;
 mod verification;

@@ -1,0 +1,261 @@
+//! The slopes of outputs of a flight by numbers of its case, beside the differences of flights in which the numbers are moved.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use reentry::control::{Against, Command, Interpolation, Schedule};
+use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
+use reentry::heating::{Convective, Heating, Radiative};
+use reentry::parachute::Parachute;
+use reentry::planet::{Gravity, Zonal};
+use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
+use reentry::sensitivity::{Moment, Moved, Output, Slopes, Variation, slopes};
+use reentry::trajectory::FlightPoint;
+use reentry::vehicle::MachTable;
+use reentry::wind::WindTable;
+use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};
+
+use super::flights::{capsule, fly, spherical, target_2, with_tolerance};
+
+/// A number of a case, the size in which it is moved, and how.
+struct Number {
+    name: &'static str,
+    size: f64,
+    moved: Box<dyn Fn(&mut Case, f64)>,
+}
+
+fn number(name: &'static str, size: f64, moved: impl Fn(&mut Case, f64) + 'static) -> Number {
+    Number { name, size, moved: Box::new(moved) }
+}
+
+impl Number {
+    fn case(&self, case: &Case, offset: f64) -> Case {
+        let mut case = case.clone();
+        (self.moved)(&mut case, offset);
+        case
+    }
+
+    fn variation(&self, case: &Case) -> Variation {
+        Variation::new(1e-3 * self.size, |offset| Some(self.case(case, offset))).unwrap()
+    }
+}
+
+type Value = fn(&FlightPoint) -> Option<f64>;
+
+const TIME: Value = |point| Some(point.time);
+const SPEED: Value = |point| Some(point.loads.speed);
+const ALTITUDE: Value = |point| Some(point.loads.altitude);
+const LOAD_FACTOR: Value = |point| Some(point.loads.load_factor);
+const HEAT_FLUX: Value = |point| Some(point.loads.heat_flux?.total());
+
+/// What is looked at in every flight: its end, its start, its peaks, a time, and both sides of its first event.
+fn outputs() -> Vec<(&'static str, Moment, Value)> {
+    let first = |after| Moment::Event { event: 0, after };
+    vec![
+        ("time", Moment::End, TIME),
+        ("longitude", Moment::End, |point| Some(point.flight_path.longitude)),
+        ("geodetic latitude", Moment::End, |point| Some(point.geodetic_latitude)),
+        ("geodetic altitude", Moment::End, |point| Some(point.geodetic_altitude)),
+        ("speed", Moment::End, SPEED),
+        ("flight-path angle", Moment::End, |point| Some(point.flight_path.flight_path_angle)),
+        ("inertial speed", Moment::End, |point| Some(point.inertial_speed)),
+        ("specific energy", Moment::End, |point| Some(point.specific_energy)),
+        ("downrange", Moment::End, |point| point.downrange),
+        ("crossrange", Moment::End, |point| point.crossrange),
+        ("ground range", Moment::End, |point| Some(point.ground_range)),
+        ("ground distance", Moment::End, |point| Some(point.ground_distance)),
+        ("mass", Moment::End, |point| Some(point.mass)),
+        ("load factor", Moment::End, LOAD_FACTOR),
+        ("density", Moment::End, |point| Some(point.loads.density)),
+        ("heat load", Moment::End, |point| point.heat_load),
+        ("bank angle", Moment::End, |point| Some(point.bank_angle)),
+        ("speed", Moment::Start, SPEED),
+        ("load factor", Moment::Start, LOAD_FACTOR),
+        ("altitude", Moment::Time(61.0), ALTITUDE),
+        ("ground distance", Moment::Time(61.0), |point| Some(point.ground_distance)),
+        ("dynamic pressure", Moment::Time(61.0), |point| Some(point.loads.dynamic_pressure)),
+        ("time", first(false), TIME),
+        ("speed", first(false), SPEED),
+        ("speed", first(true), SPEED),
+        ("load factor", first(true), LOAD_FACTOR),
+        ("load factor", Moment::Peak, LOAD_FACTOR),
+        ("dynamic pressure", Moment::Peak, |point| Some(point.loads.dynamic_pressure)),
+        ("heat flux", Moment::Peak, HEAT_FLUX),
+        ("wall temperature", Moment::Peak, |point| point.wall_temperature),
+        ("speed", Moment::Peak, SPEED),
+        ("altitude", Moment::Lowest, ALTITUDE),
+    ]
+}
+
+fn slopes_of(flight: &Trajectory, variations: &[Variation]) -> Vec<Slopes> {
+    let values: Vec<_> = outputs()
+        .into_iter()
+        .map(|(_, at, value)| (at, move |point: &FlightPoint, _: Option<Moved>| value(point)))
+        .collect();
+    let outputs: Vec<_> = values.iter().map(|(at, value)| Output { at: *at, value, turn: None }).collect();
+    slopes(flight, variations, &outputs, &AtomicBool::new(false)).unwrap()
+}
+
+/// Every slope beside central differences of flights at 1e-13, by two steps: the coarser one tells how far the finer one is off by its order.
+fn agree_with_differences(what: &str, case: &Case, numbers: &[Number]) {
+    let case = with_tolerance(case.clone(), 1e-13);
+    let variations: Vec<_> = numbers.iter().map(|number| number.variation(&case)).collect();
+    let slopes = slopes_of(&fly(&case), &variations);
+    let values = |number: &Number, offset: f64| slopes_of(&fly(&number.case(&case, offset)), &[]);
+    for (column, number) in numbers.iter().enumerate() {
+        let differences = [2e-5, 1e-5].map(|part| {
+            let step = part * number.size;
+            let [above, below] = [step, -step].map(|offset| values(number, offset));
+            let slope = |(above, below): (&Slopes, &Slopes)| Some((above.value? - below.value?) / (2.0 * step));
+            above.iter().zip(&below).map(slope).collect::<Vec<_>>()
+        });
+        for (row, (output, at, _)) in outputs().into_iter().enumerate() {
+            let what = format!("{what}: {output} at {at:?} by {}", number.name);
+            let [coarse, fine] = [&differences[0], &differences[1]].map(|differences| differences[row]);
+            let slope = slopes[row].slopes[column];
+            let (Some(coarse), Some(fine), Some(value)) = (coarse, fine, slopes[row].value) else {
+                assert!(slope.is_nan(), "{what}: {slope} of what is not there");
+                continue;
+            };
+            // The difference is off by about a third of the change that halving the step made, and by the noise of flights at 1e-13, some
+            // 1e-11 of the output or of its unit, of an altitude of a kilometre: it is a difference of radii.
+            let least = if output.ends_with("altitude") { 1e3 } else { 1.0 };
+            let noise = 2e-11 * value.abs().max(least) / (1e-5 * number.size);
+            let allowed = (fine - coarse).abs() + 1e-6 * fine.abs() + noise;
+            assert!((slope - fine).abs() <= allowed, "{what}: {slope}, by differences {fine} ± {allowed}");
+        }
+    }
+}
+
+fn set_state(index: usize) -> impl Fn(&mut Case, f64) {
+    move |case, offset| {
+        let mut path: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
+        path[index] += offset;
+        case.initial_state = FlightPath::from(path).to_planet_fixed();
+    }
+}
+
+fn at_altitude(value: f64, then: Effect) -> Event {
+    let (quantity, direction) = (Quantity::Altitude, Direction::Falling);
+    Event { when: Condition { quantity, value, direction }.into(), then }
+}
+
+fn thrust(case: &mut Case, event: usize) -> &mut Thrust {
+    match &mut case.events[event].then.engine {
+        Some(Engine::On(thrust)) => thrust,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn trigger(case: &mut Case, event: usize) -> &mut f64 {
+    match &mut case.events[event].when {
+        Trigger::Condition(condition) => &mut condition.value,
+        Trigger::After { delay, .. } => delay,
+    }
+}
+
+const HEATING: Heating =
+    Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.9 };
+
+/// TARGET case 2 with a burn, an impulse after it, a change of mass and a parachute, heated.
+fn eventful() -> Case {
+    let burn =
+        Thrust { along: ThrustAxis::Velocity, force: -9000.0, specific_impulse: Some(250.0), propellant: Some(80.0) };
+    let push = Impulse { along: ThrustAxis::inertial([1.0, -2.0, 0.7]).unwrap(), speed_change: -40.0 };
+    let aerodynamics = Some(Aerodynamics::Constant { lift_coefficient: 0.1, drag_coefficient: 0.9 });
+    let parachute = Parachute { drag_area: 0.4, inflation_time: 6.0, delay: 1.5 };
+    let when = Trigger::After { event: 0, delay: 4.0 };
+    Case {
+        vehicle: Vehicle { nose_radius: Some(0.3), ..target_2().vehicle },
+        heating: Some(HEATING),
+        events: vec![
+            at_altitude(70e3, Effect { engine: Some(Engine::On(burn)), ..Effect::default() }),
+            Event { when, then: Effect { impulse: Some(push), ..Effect::default() } },
+            at_altitude(30e3, Effect { aerodynamics, mass: Some(550.0), ..Effect::default() }),
+            at_altitude(12e3, Effect { deploy: Some(parachute), ..Effect::default() }),
+        ],
+        stop: Stop { altitude: 500.0, ..Stop::default() },
+        ..target_2()
+    }
+}
+
+#[test]
+fn slopes_by_the_numbers_of_the_flight_are_differences() {
+    let numbers = [
+        number("mass", 700.0, |case, offset| case.vehicle.mass += offset),
+        number("reference area", 0.2, |case, offset| case.vehicle.reference_area += offset),
+        number("density factor", 1.0, |case, offset| case.density_factor += offset),
+        number("radius", 1e5, set_state(0)),
+        number("latitude", 0.1, set_state(2)),
+        number("speed", 1e3, set_state(3)),
+        number("flight-path angle", 0.1, set_state(4)),
+        number("the altitude of the burn", 1e4, |case, offset| *trigger(case, 0) += offset),
+        number("the delay of the impulse", 1.0, |case, offset| *trigger(case, 1) += offset),
+        number("thrust", 9000.0, |case, offset| thrust(case, 0).force += offset),
+        number("specific impulse", 250.0, |case, offset| *thrust(case, 0).specific_impulse.as_mut().unwrap() += offset),
+        number("propellant", 80.0, |case, offset| *thrust(case, 0).propellant.as_mut().unwrap() += offset),
+        number("impulse", 40.0, |case, offset| case.events[1].then.impulse.as_mut().unwrap().speed_change += offset),
+        number("mass left", 550.0, |case, offset| *case.events[2].then.mass.as_mut().unwrap() += offset),
+        number("drag area", 0.4, |case, offset| case.events[3].then.deploy.as_mut().unwrap().drag_area += offset),
+        number("inflation time", 6.0, |case, offset| {
+            case.events[3].then.deploy.as_mut().unwrap().inflation_time += offset;
+        }),
+        number("delay", 1.5, |case, offset| case.events[3].then.deploy.as_mut().unwrap().delay += offset),
+        number("stop altitude", 1e3, |case, offset| case.stop.altitude += offset),
+    ];
+    let case = eventful();
+    for number in &numbers {
+        assert!(!number.variation(&case).changes_models(&case), "{} is no number of a model", number.name);
+    }
+    agree_with_differences("Cartesian", &case, &numbers);
+    let stopped = Case { stop: Stop { time: 100.0, ..case.stop.clone() }, ..spherical(case) };
+    let until = number("stop time", 100.0, |case, offset| case.stop.time += offset);
+    agree_with_differences("spherical, to a given time", &stopped, &[until]);
+}
+
+#[test]
+fn slopes_by_the_numbers_of_the_models_are_differences() {
+    let winds = |offset: f64| {
+        let altitudes = [0.0, 8e3, 15e3, 40e3];
+        Wind::Table(Arc::new(WindTable::new(&altitudes, &[3.0, 12.0, 30.0 + offset, -5.0], &[0.0, 4.0, 8.0, 1.0]).unwrap()))
+    };
+    let drags = |offset: f64| {
+        let (mach, drag) = ([0.5, 1.1, 3.0, 12.0], [0.9, 1.4 + offset, 1.3, 1.2]);
+        Aerodynamics::MachTable(Arc::new(MachTable::new(&mach, &[0.0, 0.1, 0.2, 0.3], &drag).unwrap()))
+    };
+    let banks = |at: f64, value: f64, interpolation| {
+        let schedule = Schedule::new(Against::Altitude, &[10e3, 30e3 + at, 60e3], &[0.3, 1.0 + value, -0.4], interpolation);
+        Control { bank_angle: Command::Schedule(Arc::new(schedule.unwrap())), ..Control::banked(0.0) }
+    };
+    let case = Case {
+        planet: Planet { gravity: Gravity::Zonal(Zonal { coefficients: [1.08e-3, -2.5e-6, -1.6e-6] }), ..Planet::EARTH_WGS84 },
+        wind: winds(0.0),
+        vehicle: Vehicle { aerodynamics: drags(0.0), nose_radius: Some(0.8), ..capsule().vehicle },
+        heating: Some(HEATING),
+        control: banks(0.0, 0.0, Interpolation::Step),
+        events: vec![at_altitude(50e3, Effect::default())],
+        ..capsule()
+    };
+    let numbers = [
+        number("gravitational parameter", 1e14, |case, offset| {
+            case.planet = Planet { gravitational_parameter: case.planet.gravitational_parameter + offset, ..case.planet };
+        }),
+        number("rotation rate", 1e-5, |case, offset| case.planet.rotation_rate += offset),
+        number("wind", 10.0, move |case, offset| case.wind = winds(offset)),
+        number("drag coefficient", 1.0, move |case, offset| case.vehicle.aerodynamics = drags(offset)),
+        number("bank angle", 1.0, move |case, offset| case.control = banks(0.0, offset, Interpolation::Step)),
+        number("altitude of the bank", 1e4, move |case, offset| case.control = banks(offset, 0.0, Interpolation::Step)),
+        number("nose radius", 0.8, |case, offset| *case.vehicle.nose_radius.as_mut().unwrap() += offset),
+        number("emissivity", 0.5, |case, offset| case.heating.as_mut().unwrap().emissivity += offset),
+        number("mass", 3000.0, |case, offset| case.vehicle.mass += offset),
+    ];
+    for (index, number) in numbers.iter().enumerate() {
+        assert_eq!(number.variation(&case).changes_models(&case), index < 8, "{}", number.name);
+    }
+    agree_with_differences("tables", &case, &numbers);
+    let scale = number("scale height", 6935.0, |case, offset| match &mut case.atmosphere {
+        Atmosphere::Exponential { scale_height, .. } => *scale_height += offset,
+        other => panic!("{other:?}"),
+    });
+    agree_with_differences("exponential, spherical", &spherical(eventful()), &[scale]);
+}
