@@ -11,7 +11,8 @@ use crate::wire::batch::MOST_CASES;
 use crate::wire::columns::COLUMNS;
 use crate::wire::epoch::RFC3339_PATTERN;
 use crate::wire::events::QUANTITIES;
-use crate::wire::reader::{MOST_COLUMNS, MOST_ENTRIES};
+use crate::wire::reader::MOST_ENTRIES;
+use crate::wire::request_schemas;
 use crate::wire::scenario::Output;
 
 /// The frame of the document; the router adds the paths.
@@ -72,14 +73,17 @@ const FAILURES: [(&str, &str); 14] = [
 /// The document of an API, as strict as the service is about its requests.
 pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
     let mut document = serde_json::to_value(api).unwrap_or_default();
-    let requests = request_schemas(&document);
+    let requests = schemas_of_requests(&document);
     if let Some(schemas) = document.pointer_mut("/components/schemas").and_then(Value::as_object_mut) {
         tag_variants(schemas);
-        for name in &requests {
+        let described = request_schemas();
+        for name in requests.iter().filter(|name| !described.contains_key(*name)) {
             if let Some(schema) = schemas.get_mut(name).and_then(Value::as_object_mut) {
                 close(name, schema);
             }
         }
+        schemas.extend(described);
+        schemas.sort_keys();
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
         for (path, method, formats) in [
@@ -114,7 +118,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
 }
 
 /// The names of all schemas that a request body reaches.
-fn request_schemas(document: &Value) -> BTreeSet<String> {
+fn schemas_of_requests(document: &Value) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut open: Vec<&Value> = Vec::new();
     for path in document["paths"].as_object().into_iter().flat_map(Map::values) {
@@ -200,11 +204,6 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
                 ("else", json!({"properties": absent})),
             ]
         }
-        "Vehicle" => vec![
-            ("if", json!({"properties": {"aerodynamics": is("type", "ballistic")}})),
-            ("then", json!({"properties": {"reference_area": false}})),
-            ("else", json!({"required": ["reference_area"]})),
-        ],
         "SimulateRequest" => {
             vec![("dependentSchemas", json!({"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}))]
         }
@@ -229,14 +228,6 @@ fn conditions(name: &str) -> Vec<(&'static str, Value)> {
             json!({"reference_area": {"properties": {"aerodynamics": {"not": is("type", "ballistic")}}}}),
         )],
         "Thrust" => vec![("dependentRequired", json!({"propellant": ["specific_impulse"]}))],
-        "Schedule" => {
-            let at = |bound: Value| json!({"properties": {"at": {"items": bound}}});
-            vec![
-                ("if", is("against", "altitude")),
-                ("then", at(json!({"minimum": -1e12, "maximum": 1e12}))),
-                ("else", at(json!({"minimum": 0}))),
-            ]
-        }
         "Output" => {
             // Columns alone are of four rows a step; without a trajectory there are none.
             let columns = json!({"required": ["columns"]});
@@ -366,7 +357,6 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
         bounds["maxItems"] = json!(MOST_ENTRIES);
         bounds
     };
-    let row = |elements: &Value| json!({"minItems": 1, "maxItems": MOST_COLUMNS, "items": elements});
     let refinements = match name {
         "Ecef" | "Eci" => vec![
             ("position", json!({"minItems": 3, "maxItems": 3})),
@@ -401,15 +391,7 @@ fn refine(name: &str, schema: &mut Map<String, Value>) {
             ("speed/items", bounded(0.0, 1e4)),
             ("from/items", turn),
         ],
-        "MachTable" => vec![("mach/items", not_negative.clone()), ("drag_coefficient/items", not_negative)],
-        "AlphaMachTable" => vec![
-            ("angle_of_attack/items", turn),
-            ("mach/items", not_negative.clone()),
-            ("lift_coefficient/items", row(&json!({"type": "number"}))),
-            ("drag_coefficient/items", row(&json!({"type": "number", "minimum": 0}))),
-        ],
         "SuttonGraves" => vec![("type", json!({"enum": ["sutton_graves"]}))],
-        "Schedule" => vec![("type", json!({"enum": ["schedule"]})), ("value/items", turn)],
         // The theories know no events, but an empty list is none.
         "AnalyticRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN})), ("events", json!({"maxItems": 0}))],
         "SimulateRequest" | "ConvertRequest" => vec![("epoch", json!({"pattern": RFC3339_PATTERN}))],

@@ -3,8 +3,10 @@
 //! A request is parsed to a tree ([`json::parse`]), read into the types of this module with every fault noted
 //! ([`reader::read`]), and translated to a core type, whose own checks see what concerns several fields.
 
+pub mod description;
 pub mod json;
 pub mod reader;
+pub mod schema;
 pub mod shown;
 
 pub mod atmosphere;
@@ -30,9 +32,20 @@ pub mod warning;
 
 use std::fmt;
 
+use description::schemas;
+use schema::Components;
+
 use reentry::number_text::NumberText;
 use serde::Serialize;
 use utoipa::ToSchema;
+
+/// The schemas of requests and of all that is in them, by their names.
+pub fn request_schemas() -> Components {
+    let mut components = Components::new();
+    schemas(&mut components, vehicle::vehicle);
+    schemas(&mut components, control::control);
+    components
+}
 
 /// The unit of every angle of a request and of its answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]

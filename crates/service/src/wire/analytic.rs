@@ -4,18 +4,19 @@ use std::io::Write;
 
 use reentry::analytic::{self, Comparison, Fault as TheoryFault, Prediction, Theory};
 use reentry::trajectory::{FlightPoint, Trajectory};
+use reentry::vehicle::Aerodynamics;
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::openapi::schema::{ObjectBuilder, RefBuilder};
 use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
+use super::control::is_given;
 use super::reader::{self, Fault};
 use super::scenario::{Job, SimulateRequest, Wanted};
 use super::sensitivities::Sensitivities;
 use super::state::State;
 use super::trajectory::Extras;
-use super::vehicle::Aerodynamics;
 use super::verification::Verification;
 use super::warning::Warning;
 use super::wind::Wind;
@@ -129,7 +130,7 @@ impl AnalyticJob {
                 Err(error) => (Ok(scenario), Err(error.0)),
             },
             Err(faults) => {
-                let (vehicle, atmosphere) = (request.vehicle.to_core(), request.atmosphere.to_core());
+                let (vehicle, atmosphere) = (request.vehicle.clone(), request.atmosphere.to_core());
                 let theory = solution.to_core().vehicle_faults(&vehicle, &atmosphere, request.density_factor);
                 let events = (!request.events.is_empty()).then_some(TheoryFault::Events);
                 (Err(faults), Err(theory.into_iter().chain(events).collect()))
@@ -151,7 +152,7 @@ impl AnalyticJob {
 /// What keeps a theory from applying, at the field of the request that it concerns.
 fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
     let has_angle = matches!(request.initial_state, State::PlanetRelative(_) | State::Geodetic(_));
-    let by_ratios = matches!(request.vehicle.aerodynamics, Aerodynamics::Ballistic(_));
+    let by_ratios = matches!(request.vehicle.aerodynamics, Aerodynamics::Ballistic { .. });
     let pointer = match fault {
         TheoryFault::NoLift | TheoryFault::Lift { .. } if by_ratios => "/vehicle/aerodynamics/lift_to_drag",
         TheoryFault::NoLift | TheoryFault::Lift { .. } => "/vehicle/aerodynamics/lift_coefficient",
@@ -300,7 +301,7 @@ impl AnalyticResponse {
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
         let mut warnings = Warning::of(&request, flight, extras.unverified);
-        if request.control.bank_angle.is_given() {
+        if is_given(&request.control.bank_angle) {
             warnings.push(Warning::bank_left_out());
         }
         if request.wind.as_ref().is_some_and(Wind::blows) {

@@ -11,6 +11,7 @@ use reentry::event::{
 use reentry::parachute::Parachute as CoreParachute;
 use reentry::propulsion::{Impulse, Thrust as CoreThrust, ThrustAxis as CoreAxis};
 use reentry::scenario::Bound;
+use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde::Serialize;
 use serde_json::json;
 use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, RefBuilder, Type};
@@ -18,9 +19,11 @@ use utoipa::openapi::{RefOr, Schema};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
+use super::description::reading;
 use super::reader::{Fault, MOST_FAULTS, Object};
+use super::schema::names;
 use super::shown::{quoted, shown};
-use super::vehicle::{Aerodynamics, Vehicle};
+use super::vehicle::aerodynamics;
 
 /// The greatest number of events, and of conditions that end a flight.
 pub const MOST_EVENTS: usize = 1000;
@@ -134,7 +137,7 @@ pub struct Effect {
     #[schema(required = false, value_type = f64, minimum = 0)]
     pub reference_area: Option<f64>,
     /// Lift and drag.
-    #[schema(required = false, value_type = Aerodynamics)]
+    #[schema(required = false, value_type = names::Aerodynamics)]
     pub aerodynamics: Option<Aerodynamics>,
     /// An impulsive change of velocity. It takes no propellant: give the mass after it as `mass`.
     #[schema(required = false, value_type = DeltaV)]
@@ -353,11 +356,13 @@ impl Event {
 
     /// Of a vehicle without an area: coefficients that would refer to one, and areas to which no coefficient ever refers.
     pub(super) fn area_faults(events: &[Self], vehicle: &Vehicle) -> Vec<Fault> {
-        if vehicle.reference_area.is_some() {
+        if !matches!(vehicle.aerodynamics, Aerodynamics::Ballistic { .. }) {
             return Vec::new();
         }
         let by_area = |Self { then, .. }: &Self| {
-            then.aerodynamics.as_ref().is_some_and(|aerodynamics| !matches!(aerodynamics, Aerodynamics::Ballistic(_)))
+            then.aerodynamics
+                .as_ref()
+                .is_some_and(|aerodynamics| !matches!(aerodynamics, Aerodynamics::Ballistic { .. }))
         };
         let ever = events.iter().any(by_area);
         let fault = |(index, event): (usize, &Self)| {
@@ -442,7 +447,7 @@ impl Effect {
         let mass = object.optional_number("mass", Bound::POSITIVE);
         let by_area = !object.is_of_kind("aerodynamics", "ballistic");
         let reference_area = if by_area { object.optional_number("reference_area", Bound::NON_NEGATIVE) } else { None };
-        let aerodynamics = object.optional_object("aerodynamics", Aerodynamics::read);
+        let aerodynamics = object.optional_object("aerodynamics", |object| reading(object, aerodynamics));
         let delta_v = object.optional_object("delta_v", DeltaV::read);
         let off = ("off", ThrustCommand::Off);
         let on = |object: &mut Object| Thrust::read(object).map(ThrustCommand::On);
@@ -465,7 +470,7 @@ impl Effect {
         CoreEffect {
             mass: self.mass,
             reference_area: self.reference_area,
-            aerodynamics: self.aerodynamics.as_ref().map(Aerodynamics::to_core),
+            aerodynamics: self.aerodynamics.clone(),
             impulse: self
                 .delta_v
                 .map(|DeltaV { along, value }| Impulse { along: along.to_core(among), speed_change: value }),

@@ -10,6 +10,7 @@ use serde_json::{Map, Number, Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
+use super::schema::ANGLE;
 use super::shown::{quoted, shown};
 
 /// A number for all entries of a table, or one for each.
@@ -52,13 +53,42 @@ impl Fault {
 ///
 /// # Errors
 /// With every fault that was found.
-pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut Object) -> Option<T>) -> Result<T, Vec<Fault>> {
-    let mut context = Context { faults: Vec::new(), unit: None, turns: false };
+pub fn read<T>(tree: &mut Value, read: impl FnOnce(&mut ObjectReader) -> Option<T>) -> Result<T, Vec<Fault>> {
+    read_in(Context::default(), tree, read).map(|(request, _)| request)
+}
+
+/// Reads a whole request as [`read`] does, and lists its numbers, defaults included, in the order in which they are read.
+///
+/// # Errors
+/// With every fault that was found.
+pub fn read_with_numbers<T>(
+    tree: &mut Value,
+    read: impl FnOnce(&mut ObjectReader) -> Option<T>,
+) -> Result<(T, Vec<NumberField>), Vec<Fault>> {
+    read_in(Context { numbers: Some(Vec::new()), ..Context::default() }, tree, read)
+}
+
+fn read_in<T>(
+    mut context: Context,
+    tree: &mut Value,
+    read: impl FnOnce(&mut ObjectReader) -> Option<T>,
+) -> Result<(T, Vec<NumberField>), Vec<Fault>> {
     let result = object(tree, String::new(), &mut context, read);
     match result {
-        Some(request) if context.faults.is_empty() => Ok(request),
+        Some(request) if context.faults.is_empty() => Ok((request, context.numbers.unwrap_or_default())),
         _ => Err(context.faults),
     }
+}
+
+/// A number of a request.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberField {
+    /// The number's place, as a JSON pointer (RFC 6901); that of an entry of a list has its index.
+    pub pointer: String,
+    /// The values that it may have; those of an angle are in radians.
+    pub bound: Bound,
+    /// The unit; of an angle [`ANGLE`](super::schema::ANGLE), of a pure number empty.
+    pub unit: &'static str,
 }
 
 /// Faults of a request that are told; a list of numbers can have half a million of them. One more is noted, which says that there are more.
@@ -74,16 +104,22 @@ pub const MOST_ROWS: usize = 100;
 pub const MOST_COLUMNS: usize = 1000;
 
 /// What all objects of a request share.
+#[derive(Default)]
 struct Context {
     faults: Vec<Fault>,
+    /// The numbers that were read; none where nobody asks for them.
+    numbers: Option<Vec<NumberField>>,
     /// None where the request's own unit is faulty: the range of an angle is then unknown.
     unit: Option<AngleUnit>,
     /// Whether an angle other than 0 was read.
     turns: bool,
 }
 
+/// For descriptions that are still to come.
+pub type Object<'a> = ObjectReader<'a>;
+
 /// An object of the request, being read. Every method that finds a fault notes it and returns `None`.
-pub struct Object<'a> {
+pub struct ObjectReader<'a> {
     map: &'a mut Map<String, Value>,
     pointer: String,
     known: Vec<&'static str>,
@@ -95,14 +131,14 @@ fn object<T>(
     value: &mut Value,
     pointer: String,
     context: &mut Context,
-    read: impl FnOnce(&mut Object) -> Option<T>,
+    read: impl FnOnce(&mut ObjectReader) -> Option<T>,
 ) -> Option<T> {
     let kind = kind_of(value);
     let Value::Object(map) = value else {
         context.note(pointer, format!("must be an object, got {kind}"));
         return None;
     };
-    let mut object = Object { map, pointer, known: Vec::new(), kind_unknown: false, context };
+    let mut object = ObjectReader { map, pointer, known: Vec::new(), kind_unknown: false, context };
     let result = read(&mut object);
     object.refuse_unknown_fields();
     result
@@ -121,7 +157,7 @@ impl Context {
     }
 }
 
-impl Object<'_> {
+impl ObjectReader<'_> {
     /// Notes a fault of this object as a whole.
     pub fn fault<T>(&mut self, detail: impl Into<String>) -> Option<T> {
         self.context.note(self.pointer.clone(), detail.into());
@@ -253,7 +289,13 @@ impl Object<'_> {
     }
 
     /// Rows of numbers, one or more, in each as many as there are in the list `along`, where there is one.
-    pub fn matrix(&mut self, name: &'static str, bound: Bound, along: &str) -> Option<Vec<Vec<f64>>> {
+    pub fn matrix_in(
+        &mut self,
+        name: &'static str,
+        bound: Bound,
+        along: &str,
+        unit: &'static str,
+    ) -> Option<Vec<Vec<f64>>> {
         let columns = self.count(along);
         let value = self.required(name)?;
         let kind = kind_of(value);
@@ -293,6 +335,9 @@ impl Object<'_> {
         for (place, detail) in faults {
             self.fault_of(&place, detail);
         }
+        for (index, row) in matrix.iter().enumerate() {
+            self.list_numbers(&format!("{name}/{index}"), row.len(), bound, unit);
+        }
         sound.then_some(matrix)
     }
 
@@ -323,7 +368,7 @@ impl Object<'_> {
         &mut self,
         name: &'static str,
         most: usize,
-        read: impl FnMut(&mut Object) -> Option<T>,
+        read: impl FnMut(&mut ObjectReader) -> Option<T>,
     ) -> Option<Vec<T>> {
         if self.has(name) { self.objects(name, [0, most], read) } else { Some(Vec::new()) }
     }
@@ -333,7 +378,7 @@ impl Object<'_> {
         &mut self,
         name: &'static str,
         counts: [usize; 2],
-        mut read: impl FnMut(&mut Object) -> Option<T>,
+        mut read: impl FnMut(&mut ObjectReader) -> Option<T>,
     ) -> Option<Vec<T>> {
         let value = self.required(name)?;
         let kind = kind_of(value);
@@ -492,8 +537,8 @@ impl Object<'_> {
         &mut self,
         name: &'static str,
         what: &str,
-        number: impl FnOnce(&mut Object) -> Option<T>,
-        object: impl FnOnce(&mut Object) -> Option<T>,
+        number: impl FnOnce(&mut ObjectReader) -> Option<T>,
+        object: impl FnOnce(&mut ObjectReader) -> Option<T>,
     ) -> Option<T> {
         match self.required(name)? {
             Value::Number(_) => number(self),
@@ -510,7 +555,7 @@ impl Object<'_> {
         &mut self,
         name: &'static str,
         (word, meaning): (&str, T),
-        object: impl FnOnce(&mut Object) -> Option<T>,
+        object: impl FnOnce(&mut ObjectReader) -> Option<T>,
     ) -> Option<T> {
         match self.required(name)? {
             Value::String(given) if given == word => Some(meaning),
@@ -545,7 +590,7 @@ impl Object<'_> {
     }
 
     /// An object that must be given.
-    pub fn object<T>(&mut self, name: &'static str, read: impl FnOnce(&mut Object) -> Option<T>) -> Option<T> {
+    pub fn object<T>(&mut self, name: &'static str, read: impl FnOnce(&mut ObjectReader) -> Option<T>) -> Option<T> {
         let pointer = format!("{}/{name}", self.pointer);
         self.required(name)?;
         let value = self.map.get_mut(name)?;
@@ -556,7 +601,7 @@ impl Object<'_> {
     pub fn optional_object<T>(
         &mut self,
         name: &'static str,
-        read: impl FnOnce(&mut Object) -> Option<T>,
+        read: impl FnOnce(&mut ObjectReader) -> Option<T>,
     ) -> Option<Option<T>> {
         if self.has(name) { self.object(name, read).map(Some) } else { Some(None) }
     }
@@ -566,7 +611,7 @@ impl Object<'_> {
         &mut self,
         name: &'static str,
         default: Value,
-        read: impl FnOnce(&mut Object) -> Option<T>,
+        read: impl FnOnce(&mut ObjectReader) -> Option<T>,
     ) -> Option<T> {
         self.fill(name, default);
         self.object(name, read)
@@ -590,7 +635,8 @@ impl Object<'_> {
         }
     }
 
-    fn required(&mut self, name: &'static str) -> Option<&Value> {
+    /// A field that must be given.
+    pub fn required(&mut self, name: &'static str) -> Option<&Value> {
         self.known.push(name);
         if !self.map.contains_key(name) {
             self.fault_of(name, "is required".to_owned());
@@ -639,6 +685,101 @@ impl Object<'_> {
             }
         }
     }
+
+    /// A number that must be given.
+    pub fn number_in(&mut self, name: &'static str, bound: Bound, unit: &'static str) -> Option<f64> {
+        let number = self.number(name, bound)?;
+        self.list_number(name, bound, unit);
+        Some(number)
+    }
+
+    /// An angle that must be given, in radians.
+    pub fn radians(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
+        let angle = self.angle(name, bound)?;
+        self.list_number(name, bound, ANGLE);
+        self.context.unit.map(|unit| unit.to_radians(angle))
+    }
+
+    /// Numbers, so many at least and at most.
+    pub fn numbers_in(
+        &mut self,
+        name: &'static str,
+        bound: Bound,
+        counts: [usize; 2],
+        unit: &'static str,
+    ) -> Option<Vec<f64>> {
+        let numbers = self.list(name, counts, "numbers", |element| bounded(element, bound))?;
+        self.list_numbers(name, numbers.len(), bound, unit);
+        Some(numbers)
+    }
+
+    /// Angles in the request's unit, so many at least and at most; the bound is in radians.
+    pub fn angles_in(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
+        let unit = self.context.unit;
+        let angles = self.list(name, counts, "numbers", |element| bounded_angle(element, bound, unit))?;
+        self.context.turns |= angles.iter().any(|angle| *angle != 0.0);
+        self.list_numbers(name, angles.len(), bound, ANGLE);
+        Some(angles)
+    }
+
+    /// A vector of three numbers.
+    pub fn vector_in(&mut self, name: &'static str, bound: Bound, unit: &'static str) -> Option<[f64; 3]> {
+        if let Some(count) = self.count(name).filter(|count| *count != 3) {
+            self.fault_of(name, format!("must have 3 numbers, got {count}"));
+        }
+        self.numbers_in(name, bound, [0, usize::MAX], unit)?.try_into().ok()
+    }
+
+    /// A whole number between two, of which the greater may be any.
+    pub fn whole_number_between(&mut self, name: &'static str, [least, most]: [usize; 2]) -> Option<usize> {
+        let which =
+            if most == usize::MAX { format!("of at least {least}") } else { format!("between {least} and {most}") };
+        self.whole_number_in(name, least..=most, &which)
+    }
+
+    /// One of several words, by its index.
+    pub fn word(&mut self, name: &'static str, words: &[&str]) -> Option<usize> {
+        let words: Vec<_> = words.iter().copied().zip(0..).collect();
+        self.choice(name, &words)
+    }
+
+    /// Words out of several, one or more, none of them twice, by their indices.
+    pub fn words(&mut self, name: &'static str, words: &[&str]) -> Option<Vec<usize>> {
+        let words: Vec<_> = words.iter().copied().zip(0..).collect();
+        self.choices(name, &words)
+    }
+
+    /// Strings, so many at most.
+    pub fn strings(&mut self, name: &'static str, most: usize) -> Option<Vec<String>> {
+        self.list(name, [0, most], "strings", text)
+    }
+
+    /// Whether a field, given by its path through objects, is given and this word.
+    pub fn has_word(&self, path: &str, word: &str) -> bool {
+        let (name, rest) = path.split_once('/').map_or((path, None), |(name, rest)| (name, Some(rest)));
+        let value = self.map.get(name).and_then(|value| rest.map_or(Some(value), |rest| value.get(rest)));
+        value.is_some_and(|value| value == word)
+    }
+
+    /// Lists a number that was read.
+    pub fn list_number(&mut self, name: &str, bound: Bound, unit: &'static str) {
+        if let Some(numbers) = &mut self.context.numbers {
+            numbers.push(NumberField { pointer: format!("{}/{name}", self.pointer), bound, unit });
+        }
+    }
+
+    /// Lists the numbers of a list that was read.
+    fn list_numbers(&mut self, name: &str, count: usize, bound: Bound, unit: &'static str) {
+        if let Some(numbers) = &mut self.context.numbers {
+            let field = |index| NumberField { pointer: format!("{}/{name}/{index}", self.pointer), bound, unit };
+            numbers.extend((0..count).map(field));
+        }
+    }
+
+    /// The unit of the request's angles, of which all are that are read after it; none where it is faulty.
+    pub fn set_angle_unit(&mut self, unit: Option<AngleUnit>) {
+        self.context.unit = unit;
+    }
 }
 
 /// What is wrong with the length of a list, if it is not between the two.
@@ -649,6 +790,22 @@ fn wrong_count(count: usize, [least, most]: [usize; 2]) -> Option<String> {
     } else {
         (count > most).then(|| format!("must have at most {most} entries, got {count}"))
     }
+}
+
+/// Reads text.
+///
+/// # Errors
+/// With what is wrong.
+pub fn text(value: &Value) -> Result<String, String> {
+    value.as_str().map(str::to_owned).ok_or_else(|| format!("must be a string, got {}", kind_of(value)))
+}
+
+/// Reads true or false.
+///
+/// # Errors
+/// With what is wrong.
+pub fn boolean(value: &Value) -> Result<bool, String> {
+    value.as_bool().ok_or_else(|| format!("must be true or false, got {}", kind_of(value)))
 }
 
 fn number(value: &Value) -> Result<f64, String> {
@@ -681,7 +838,8 @@ fn bounded_angle(value: &Value, bound: Bound, unit: Option<AngleUnit>) -> Result
     }
 }
 
-fn kind_of(value: &Value) -> &'static str {
+/// What a value is, for messages.
+pub fn kind_of(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
         Value::Bool(_) => "a boolean",

@@ -1,7 +1,9 @@
 //! The request of `/simulate`: its parts, stop, output and solver.
 
+use reentry::control::Control;
 use reentry::scenario::{self, Bound, Case, Equations, Scenario};
 use reentry::trajectory::Sampling;
+use reentry::vehicle::Vehicle;
 use reentry::wind::Wind as CoreWind;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -10,15 +12,17 @@ use utoipa::ToSchema;
 use super::AngleUnit;
 use super::atmosphere::Atmosphere;
 use super::columns::{COLUMNS, Column, Known};
-use super::control::Control;
+use super::control::control;
+use super::description::reading;
 use super::epoch::Epoch;
 use super::events::{Among, Condition, Event, MOST_EVENTS};
 use super::heating::Heating;
 use super::planet::Planet;
 use super::reader::{self, Fault, Object};
+use super::schema::names;
 use super::shown::shown;
 use super::state::State;
-use super::vehicle::Vehicle;
+use super::vehicle::vehicle;
 use super::wind::Wind;
 
 /// A case to simulate. `vehicle` and `initial_state` are required; all else has defaults. SI units; angles in `angle_unit`.
@@ -58,9 +62,10 @@ pub struct SimulateRequest {
     #[schema(required = false, value_type = Wind)]
     pub wind: Option<Wind>,
     /// What flies.
+    #[schema(value_type = names::Vehicle)]
     pub vehicle: Vehicle,
     /// How it is flown.
-    #[schema(required = false)]
+    #[schema(required = false, value_type = names::Control)]
     pub control: Control,
     /// How it is heated; without it, no heat flux is computed.
     #[schema(required = false, value_type = Heating)]
@@ -225,8 +230,8 @@ impl SimulateRequest {
         let atmosphere = object.object_or("atmosphere", json!({"type": "exponential"}), Atmosphere::read);
         let density_factor = object.number_or("density_factor", Bound::NON_NEGATIVE, 1.0);
         let wind = object.optional_object("wind", Wind::read);
-        let vehicle = object.object("vehicle", Vehicle::read);
-        let control = object.object_or("control", json!({}), Control::read);
+        let vehicle = object.object("vehicle", |object| reading(object, vehicle));
+        let control = object.object_or("control", json!({}), |object| reading(object, control));
         let heating = object.optional_object("heating", Heating::read);
         let events = object.optional_objects("events", MOST_EVENTS, Event::read);
         let has_epoch = object.has("epoch");
@@ -316,8 +321,8 @@ impl SimulateRequest {
             atmosphere: self.atmosphere.to_core(),
             density_factor: self.density_factor,
             wind: self.wind.as_ref().map_or(CoreWind::Still, Wind::to_core),
-            vehicle: self.vehicle.to_core(),
-            control: self.control.to_core(self.angle_unit),
+            vehicle: self.vehicle.clone(),
+            control: self.control.clone(),
             heating: self.heating.map(Heating::to_core),
             events: self.events.iter().map(|event| event.to_core(self.angle_unit, &self.events, &among)).collect(),
             initial_state,

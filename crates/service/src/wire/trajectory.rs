@@ -14,6 +14,7 @@ use super::columns::{Columns, Row};
 use super::planet::{PlanetModel, Shape};
 use super::scenario::{Formulation, Job};
 use super::sensitivities::Sensitivities;
+use super::vehicle;
 use super::verification::Verification;
 use super::warning::Warning;
 use super::wind::Wind;
@@ -280,7 +281,7 @@ impl SimulateResponse {
                 shape: request.planet.shape,
                 atmosphere: request.atmosphere.kind(),
                 gravity: request.planet.gravity.kind(),
-                aerodynamics: request.vehicle.aerodynamics.kind(),
+                aerodynamics: vehicle::kind(&request.vehicle.aerodynamics),
                 wind: request.wind.as_ref().map_or("still", Wind::kind),
             },
             termination,

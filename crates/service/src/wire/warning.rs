@@ -5,15 +5,16 @@ use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use reentry::number_text::{NumberText, apart, rounded};
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{self, TableId, Trajectory};
+use reentry::vehicle::Aerodynamics;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::control::is_given;
 use super::epoch::Epoch;
 use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
 use super::scenario::SimulateRequest;
 use super::state::{Frame, State};
-use super::vehicle::Aerodynamics;
 use super::{Angle, AngleUnit};
 
 /// Something that the user should know.
@@ -44,7 +45,7 @@ impl Warning {
         let later = request.events.iter().filter_map(|event| event.then.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
         let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
-        if request.control.angle_of_attack.is_given() && !by_angle_of_attack {
+        if is_given(&request.control.angle_of_attack) && !by_angle_of_attack {
             let detail = "control.angle_of_attack has no effect: only an alpha_mach_table depends on it";
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
@@ -298,6 +299,7 @@ pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use reentry::trajectory::{TableId, Warning as CoreWarning};
+    use reentry::vehicle::Aerodynamics;
 
     use super::{AngleUnit, Warning};
 
