@@ -18,7 +18,7 @@ mod parachutes;
 mod phases;
 mod pitfalls;
 mod properties;
-mod sensitivities;
 mod propulsion;
+mod sensitivities;
 mod tables;
 mod verification;

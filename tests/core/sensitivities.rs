@@ -154,8 +154,7 @@ fn trigger(case: &mut Case, event: usize) -> &mut f64 {
     }
 }
 
-const HEATING: Heating =
-    Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.9 };
+const HEATING: Heating = Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.9 };
 
 /// TARGET case 2 with a burn, an impulse after it, a change of mass and a parachute, heated.
 fn eventful() -> Case {
@@ -217,18 +216,24 @@ fn slopes_by_the_numbers_of_the_flight_are_differences() {
 fn slopes_by_the_numbers_of_the_models_are_differences() {
     let winds = |offset: f64| {
         let altitudes = [0.0, 8e3, 15e3, 40e3];
-        Wind::Table(Arc::new(WindTable::new(&altitudes, &[3.0, 12.0, 30.0 + offset, -5.0], &[0.0, 4.0, 8.0, 1.0]).unwrap()))
+        Wind::Table(Arc::new(
+            WindTable::new(&altitudes, &[3.0, 12.0, 30.0 + offset, -5.0], &[0.0, 4.0, 8.0, 1.0]).unwrap(),
+        ))
     };
     let drags = |offset: f64| {
         let (mach, drag) = ([0.5, 1.1, 3.0, 12.0], [0.9, 1.4 + offset, 1.3, 1.2]);
         Aerodynamics::MachTable(Arc::new(MachTable::new(&mach, &[0.0, 0.1, 0.2, 0.3], &drag).unwrap()))
     };
     let banks = |at: f64, value: f64, interpolation| {
-        let schedule = Schedule::new(Against::Altitude, &[10e3, 30e3 + at, 60e3], &[0.3, 1.0 + value, -0.4], interpolation);
+        let schedule =
+            Schedule::new(Against::Altitude, &[10e3, 30e3 + at, 60e3], &[0.3, 1.0 + value, -0.4], interpolation);
         Control { bank_angle: Command::Schedule(Arc::new(schedule.unwrap())), ..Control::banked(0.0) }
     };
     let case = Case {
-        planet: Planet { gravity: Gravity::Zonal(Zonal { coefficients: [1.08e-3, -2.5e-6, -1.6e-6] }), ..Planet::EARTH_WGS84 },
+        planet: Planet {
+            gravity: Gravity::Zonal(Zonal { coefficients: [1.08e-3, -2.5e-6, -1.6e-6] }),
+            ..Planet::EARTH_WGS84
+        },
         wind: winds(0.0),
         vehicle: Vehicle { aerodynamics: drags(0.0), nose_radius: Some(0.8), ..capsule().vehicle },
         heating: Some(HEATING),
@@ -238,7 +243,8 @@ fn slopes_by_the_numbers_of_the_models_are_differences() {
     };
     let numbers = [
         number("gravitational parameter", 1e14, |case, offset| {
-            case.planet = Planet { gravitational_parameter: case.planet.gravitational_parameter + offset, ..case.planet };
+            case.planet =
+                Planet { gravitational_parameter: case.planet.gravitational_parameter + offset, ..case.planet };
         }),
         number("rotation rate", 1e-5, |case, offset| case.planet.rotation_rate += offset),
         number("wind", 10.0, move |case, offset| case.wind = winds(offset)),

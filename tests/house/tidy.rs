@@ -17,6 +17,7 @@ const CORE: [&[&str]; 11] = [
     &["trajectory"],
     &["simulate"],
     &["analytic", "sensitivity", "verification"],
+    &["solve"],
 ];
 
 /// The levels of the service.

@@ -20,6 +20,7 @@ mod great_circle;
 mod inertial;
 mod inertial_flight_path;
 mod orbital_elements;
+mod site;
 
 pub use earth::{
     TESTED_YEARS, earth_rotation_angle, gcrf_to_planet_fixed, greenwich_mean_sidereal_time, teme_to_planet_fixed,
@@ -30,6 +31,7 @@ pub use great_circle::{GreatCircle, ground_rate};
 pub use inertial::{Inertial, about_pole};
 pub use inertial_flight_path::InertialFlightPath;
 pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements, true_anomaly};
+pub use site::Site;
 
 use std::f64::consts::{PI, TAU};
 

@@ -4,11 +4,14 @@
 //! the [`Interpolant`] of a [`Step`] gives the state at every instant inside it, and [`event`] looks there for falls through zero and
 //! for maxima.
 
+mod any_step;
 pub mod event;
 mod step;
 mod tableau;
 
 pub use step::{Interpolant, Step, follow};
+
+pub(crate) use any_step::AnyStep;
 
 use std::array::from_fn;
 

@@ -69,6 +69,7 @@
 pub mod scenario;
 pub mod sensitivity;
 pub mod simulate;
+pub mod solve;
 pub mod trajectory;
 pub mod verification;
 

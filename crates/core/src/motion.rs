@@ -2,7 +2,6 @@
 
 mod cartesian;
 mod directions;
-mod dispatch;
 mod loads;
 mod model_mode;
 mod quantity;
@@ -14,7 +13,6 @@ pub use loads::Loads;
 pub use model_mode::{ModelMode, Switch, TableId};
 pub use spherical::Spherical;
 
-pub(crate) use dispatch::{ForFormulation, FormulationIn, dispatch};
 pub(crate) use model_mode::{Chatter, SwitchQuantity};
 pub(crate) use quantity::StateRate;
 

@@ -1,11 +1,13 @@
 //! A case (vehicle, initial state, environment, events, stop conditions, solver), and the check that it can be flown.
 
 mod bounds;
+mod dispatch;
 mod numbers;
 mod phase;
 
 pub use bounds::Bound;
 
+pub(crate) use dispatch::{ForFormulation, FormulationIn, dispatch};
 pub(crate) use numbers::Numbers;
 pub(crate) use phase::Phase;
 

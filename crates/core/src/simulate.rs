@@ -11,12 +11,12 @@ mod stop_altitude;
 
 pub use lanes::arrivals;
 
-use crate::integrate::Step;
+use crate::integrate::{AnyStep, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{Cartesian, Formulation, Singularity, Spherical, Switch};
+use crate::motion::{Formulation, Singularity, Switch};
 use crate::number_text::NumberText;
-use crate::scenario::{Equations, Phase, Scenario};
-use crate::trajectory::{AnyStep, Arrival, Flown, StoredStep, Trajectory};
+use crate::scenario::{ForFormulation, FormulationIn, Phase, Scenario, dispatch};
+use crate::trajectory::{Arrival, Flown, StoredStep, Trajectory};
 use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
@@ -124,12 +124,7 @@ fn name(switch: Switch) -> &'static str {
 /// of the vehicle or brakes it to rest, and when interrupted.
 pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
-    match (case.solver.equations, case.heating) {
-        (Equations::Cartesian, None) => record(scenario, Cartesian(case.forces()), AnyStep::Unheated, interrupt),
-        (Equations::Spherical, None) => record(scenario, Spherical(case.forces()), AnyStep::Unheated, interrupt),
-        (Equations::Cartesian, Some(_)) => record(scenario, Cartesian(case.forces()), AnyStep::Heated, interrupt),
-        (Equations::Spherical, Some(_)) => record(scenario, Spherical(case.forces()), AnyStep::Heated, interrupt),
-    }
+    dispatch(case.solver.equations, case.heating.is_some(), Record { scenario, interrupt })
 }
 
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and, but for events, allocates no memory.
@@ -137,52 +132,70 @@ pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajec
 /// # Errors
 /// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
 pub fn arrival(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Arrival, SimulationError> {
-    fn end<F: Formulation<N>, const N: usize>(
-        scenario: &Scenario,
-        motion: F,
-        interrupt: &dyn Interrupt,
-    ) -> Result<Arrival, SimulationError> {
-        fly(&mut Flight::start(scenario, motion, interrupt)?, |_| Ok(()))
-    }
     let case = scenario.case();
-    match (case.solver.equations, case.heating) {
-        (Equations::Cartesian, None) => end::<_, 6>(scenario, Cartesian(case.forces()), interrupt),
-        (Equations::Spherical, None) => end::<_, 6>(scenario, Spherical(case.forces()), interrupt),
-        (Equations::Cartesian, Some(_)) => end::<_, 7>(scenario, Cartesian(case.forces()), interrupt),
-        (Equations::Spherical, Some(_)) => end::<_, 7>(scenario, Spherical(case.forces()), interrupt),
+    dispatch(case.solver.equations, case.heating.is_some(), End { scenario, interrupt })
+}
+
+/// A flight of which the end alone is wanted.
+struct End<'a> {
+    scenario: &'a Scenario,
+    interrupt: &'a dyn Interrupt,
+}
+
+impl ForFormulation for End<'_> {
+    type Number = f64;
+    type Output = Result<Arrival, SimulationError>;
+
+    fn with<F: FormulationIn<f64, N>, const N: usize>(self) -> Self::Output
+    where
+        AnyStep: From<Step<N>>,
+    {
+        let motion = F::of_plain(self.scenario.case().forces());
+        fly(&mut Flight::start(self.scenario, motion, self.interrupt)?, |_| Ok(()))
     }
 }
 
-fn record<F: Formulation<N>, const N: usize>(
-    scenario: &Scenario,
-    motion: F,
-    keep: impl Fn(Step<N>) -> AnyStep,
-    interrupt: &dyn Interrupt,
-) -> Result<Trajectory, SimulationError> {
-    let case = scenario.case();
-    let mut flight = Flight::start(scenario, motion, interrupt)?;
-    let mut steps = Vec::with_capacity(TYPICAL_STEPS);
-    let mut peak_tracker = PeakTracker::new(&flight.motion, &flight.integrator, case.may_lift())?;
-    let start = flight.instant();
-    let arrival = fly(&mut flight, |view| {
-        peak_tracker.observe(view)?;
-        let mode = view.motion.forces().mode();
-        steps.push(StoredStep { step: keep(Step::clone(&view.step)), phase: view.phase, mode });
-        if steps.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(steps.capacity() * size_of::<StoredStep>()) {
-            return Err(SimulationError::NoRoom { time: view.step.end_time });
-        }
-        Ok(())
-    })?;
-    let end = flight.instant();
-    peak_tracker.end(flight.motion.forces(), &end)?;
-    let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
-    let FlightLog { mut phases, event_records, warnings: others } = flight.log;
-    phases.insert(0, Phase::first(case));
-    warnings.extend(others);
-    Ok(Trajectory::new(
-        case.clone(),
-        Flown { start, steps, phases, event_records, end, arrival, peaks, peaks_of_phases, warnings },
-    ))
+/// A flight that is kept.
+struct Record<'a> {
+    scenario: &'a Scenario,
+    interrupt: &'a dyn Interrupt,
+}
+
+impl ForFormulation for Record<'_> {
+    type Number = f64;
+    type Output = Result<Trajectory, SimulationError>;
+
+    fn with<F: FormulationIn<f64, N>, const N: usize>(self) -> Self::Output
+    where
+        AnyStep: From<Step<N>>,
+    {
+        let Self { scenario, interrupt } = self;
+        let case = scenario.case();
+        let mut flight = Flight::start(scenario, F::of_plain(case.forces()), interrupt)?;
+        let mut steps = Vec::with_capacity(TYPICAL_STEPS);
+        let mut peak_tracker = PeakTracker::new(&flight.motion, &flight.integrator, case.may_lift())?;
+        let start = flight.instant();
+        let arrival = fly(&mut flight, |view| {
+            peak_tracker.observe(view)?;
+            let mode = view.motion.forces().mode();
+            steps.push(StoredStep { step: Step::clone(&view.step).into(), phase: view.phase, mode });
+            let held = steps.capacity() * size_of::<StoredStep>();
+            if steps.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(held) {
+                return Err(SimulationError::NoRoom { time: view.step.end_time });
+            }
+            Ok(())
+        })?;
+        let end = flight.instant();
+        peak_tracker.end(flight.motion.forces(), &end)?;
+        let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
+        let FlightLog { mut phases, event_records, warnings: others } = flight.log;
+        phases.insert(0, Phase::first(case));
+        warnings.extend(others);
+        Ok(Trajectory::new(
+            case.clone(),
+            Flown { start, steps, phases, event_records, end, arrival, peaks, peaks_of_phases, warnings },
+        ))
+    }
 }
 
 /// Flies to the end and shows every step on the way.

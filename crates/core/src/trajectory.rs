@@ -8,7 +8,7 @@ mod stored_step;
 pub use phases::{FlightPhase, PhaseStart};
 pub use sampling::{Sampling, TooManyInstants};
 
-pub(crate) use stored_step::{AnyStep, Motion, StoredStep};
+pub(crate) use stored_step::{Motion, StoredStep};
 
 use std::f64::consts::TAU;
 use std::sync::OnceLock;

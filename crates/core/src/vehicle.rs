@@ -9,7 +9,6 @@ pub use mach_table::MachTable;
 use std::sync::Arc;
 
 use crate::scalar::Scalar;
-use crate::scenario::{Case, Numbers};
 
 /// Lift and drag coefficients. Those that are numbers by themselves may carry derivatives.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +75,7 @@ impl Aerodynamics {
     }
 
     /// The two numbers by themselves; zeros of a table.
-    fn numbers(&self) -> [f64; 2] {
+    pub(crate) fn numbers(&self) -> [f64; 2] {
         match *self {
             Self::Constant { lift_coefficient, drag_coefficient } => [lift_coefficient, drag_coefficient],
             Self::Ballistic { ballistic_coefficient, lift_to_drag } => [ballistic_coefficient, lift_to_drag],
@@ -85,30 +84,7 @@ impl Aerodynamics {
     }
 }
 
-impl<P: Scalar> Aerodynamics<P> {
-    /// Coefficients of a case, with its numbers.
-    pub(crate) fn of(numbers: &impl Numbers<P>, of: impl Fn(&Case) -> &Aerodynamics) -> Self {
-        let [first, second] = [0, 1].map(|index| numbers.number(|case| of(case).numbers()[index]));
-        match of(numbers.case()) {
-            Aerodynamics::Constant { .. } => Self::Constant { lift_coefficient: first, drag_coefficient: second },
-            Aerodynamics::Ballistic { .. } => Self::Ballistic { ballistic_coefficient: first, lift_to_drag: second },
-            Aerodynamics::MachTable(table) => Self::MachTable(Arc::clone(table)),
-            Aerodynamics::AlphaMachTable(table) => Self::AlphaMachTable(Arc::clone(table)),
-        }
-    }
-}
-
 impl<P: Scalar> Vehicle<P> {
-    /// The vehicle of a case, with its numbers.
-    pub(crate) fn of(numbers: &impl Numbers<P>) -> Self {
-        Self {
-            mass: numbers.number(|case| case.vehicle.mass),
-            reference_area: numbers.number(|case| case.vehicle.reference_area),
-            aerodynamics: Aerodynamics::of(numbers, |case| &case.vehicle.aerodynamics),
-            nose_radius: numbers.case().vehicle.nose_radius,
-        }
-    }
-
     /// The same in other numbers.
     pub(crate) fn map<Q>(&self, number: impl Fn(P) -> Q + Copy) -> Vehicle<Q> {
         let aerodynamics = match &self.aerodynamics {

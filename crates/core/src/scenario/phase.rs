@@ -29,12 +29,35 @@ pub(crate) struct Phase<P = f64> {
     pub(crate) canopies: Vec<Canopy<P>>,
 }
 
+/// The vehicle of the start.
+fn vehicle<P: Scalar>(numbers: &impl Numbers<P>) -> Vehicle<P> {
+    Vehicle {
+        mass: numbers.number(|case| case.vehicle.mass),
+        reference_area: numbers.number(|case| case.vehicle.reference_area),
+        aerodynamics: aerodynamics_in(numbers, |case| &case.vehicle.aerodynamics),
+        nose_radius: numbers.case().vehicle.nose_radius,
+    }
+}
+
+/// The aerodynamics at a place of the case.
+fn aerodynamics_in<P: Scalar>(numbers: &impl Numbers<P>, of: impl Fn(&Case) -> &Aerodynamics) -> Aerodynamics<P> {
+    let [first, second] = [0, 1].map(|index| numbers.number(|case| of(case).numbers()[index]));
+    match of(numbers.case()) {
+        Aerodynamics::Constant { .. } => Aerodynamics::Constant { lift_coefficient: first, drag_coefficient: second },
+        Aerodynamics::Ballistic { .. } => {
+            Aerodynamics::Ballistic { ballistic_coefficient: first, lift_to_drag: second }
+        }
+        Aerodynamics::MachTable(table) => Aerodynamics::MachTable(Arc::clone(table)),
+        Aerodynamics::AlphaMachTable(table) => Aerodynamics::AlphaMachTable(Arc::clone(table)),
+    }
+}
+
 impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     /// That in which a flight begins.
     pub(crate) fn first(numbers: &impl Numbers<P>) -> Self {
         Self {
             since: P::zero(),
-            vehicle: Vehicle::of(numbers),
+            vehicle: vehicle(numbers),
             aerodynamics_of: None,
             thrust: None,
             thrust_of: None,
@@ -101,7 +124,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         let vehicle = Vehicle {
             reference_area: number(|effect| effect.reference_area).unwrap_or(reference_area),
             aerodynamics: match effect.aerodynamics {
-                Some(_) => Aerodynamics::of(numbers, |case| {
+                Some(_) => aerodynamics_in(numbers, |case| {
                     case.events[event].then.aerodynamics.as_ref().unwrap_or(&case.vehicle.aerodynamics)
                 }),
                 None => aerodynamics,
@@ -176,7 +199,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         };
         match aerodynamics {
             Some(Aerodynamics::MachTable(table)) => {
-                phase.vehicle.aerodynamics = Aerodynamics::MachTable(Arc::clone(table))
+                phase.vehicle.aerodynamics = Aerodynamics::MachTable(Arc::clone(table));
             }
             Some(Aerodynamics::AlphaMachTable(table)) => {
                 phase.vehicle.aerodynamics = Aerodynamics::AlphaMachTable(Arc::clone(table));

@@ -13,11 +13,11 @@ use super::variation::{Dual, Varied};
 use super::varied_forces::{VariedForces, VariedMotion};
 use crate::coordinates::{GreatCircle, PlanetFixed};
 use crate::event::{Condition, Quantity, Trigger};
-use crate::integrate::{System, follow};
+use crate::integrate::{AnyStep, Step, System, follow};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, ForFormulation, Forces, FormulationIn, ModelMode, StateRate, moving};
+use crate::motion::{self, Forces, ModelMode, StateRate, moving};
 use crate::scalar::{Scalar, length};
-use crate::scenario::{Case, Numbers, Phase};
+use crate::scenario::{Case, ForFormulation, FormulationIn, Numbers, Phase};
 use crate::simulate::SimulationError;
 use crate::trajectory::{EventRecord, StoredStep, Termination, Trajectory};
 
@@ -73,7 +73,10 @@ impl<const W: usize> ForFormulation for Follow<'_, W> {
     /// The samples of the places, in their order; none of one that the flight does not have.
     type Output = Result<Vec<Option<Sample<W>>>, SimulationError>;
 
-    fn with<F: FormulationIn<Dual<W>, N>, const N: usize>(self) -> Self::Output {
+    fn with<F: FormulationIn<Dual<W>, N>, const N: usize>(self) -> Self::Output
+    where
+        AnyStep: From<Step<N>>,
+    {
         let steps = &self.flight.flown.steps;
         let mut follower = Follower::<F, N, W>::start(&self);
         for (index, step) in steps.iter().enumerate() {

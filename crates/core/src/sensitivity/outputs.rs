@@ -4,7 +4,8 @@ use super::follow::{Follow, Place, Sample};
 use super::variation::{CENTRAL, Dual, Node, Variation, Varied};
 use crate::coordinates::PlanetFixed;
 use crate::interrupt::Interrupt;
-use crate::motion::{Forces, dispatch};
+use crate::motion::Forces;
+use crate::scenario::dispatch;
 use crate::simulate::SimulationError;
 use crate::trajectory::{FlightPoint, Origin, Trajectory};
 

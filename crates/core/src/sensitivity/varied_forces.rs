@@ -5,8 +5,8 @@ use num_dual::Derivative;
 
 use super::variation::{Dual, Node, Varied};
 use crate::integrate::System;
-use crate::motion::{Forces, FormulationIn, ModelMode, Switch};
-use crate::scenario::Phase;
+use crate::motion::{Forces, ModelMode, Switch};
+use crate::scenario::{FormulationIn, Phase};
 
 /// The forces of a phase: in dual numbers by the models of the case, and plain by the models of the cases in which these vary, for the
 /// derivatives by what is in the models.

@@ -1,7 +1,7 @@
 //! A step of a flight, kept, and the motion inside it.
 
 use crate::coordinates::PlanetFixed;
-use crate::integrate::{Interpolant, Step};
+use crate::integrate::{AnyStep, Interpolant};
 use crate::motion::{Cartesian, Forces, Formulation, ModelMode, Spherical, heat_load};
 
 /// A step of a flight, and the phase and the mode of its models during it.
@@ -10,13 +10,6 @@ pub(crate) struct StoredStep {
     pub(crate) step: AnyStep,
     pub(crate) phase: usize,
     pub(crate) mode: ModelMode,
-}
-
-/// A step, with or without the heat load.
-#[derive(Clone, Debug)]
-pub(crate) enum AnyStep {
-    Unheated(Step<6>),
-    Heated(Step<7>),
 }
 
 /// The equations of either formulation.
@@ -34,26 +27,17 @@ pub(crate) enum AnyInterpolant {
 impl StoredStep {
     /// s.
     pub(crate) fn start_time(&self) -> f64 {
-        match &self.step {
-            AnyStep::Unheated(step) => step.start_time,
-            AnyStep::Heated(step) => step.start_time,
-        }
+        self.step.start_time()
     }
 
     /// s.
     pub(crate) fn end_time(&self) -> f64 {
-        match &self.step {
-            AnyStep::Unheated(step) => step.end_time,
-            AnyStep::Heated(step) => step.end_time,
-        }
+        self.step.end_time()
     }
 
     /// The instant at a part of the step, s.
     pub(crate) fn time(&self, part: f64) -> f64 {
-        match &self.step {
-            AnyStep::Unheated(step) => step.time(part),
-            AnyStep::Heated(step) => step.time(part),
-        }
+        self.step.time(part)
     }
 }
 

@@ -1,9 +1,9 @@
 //! The one place that knows which formulations there are, and with how many numbers each holds a state.
 
-use super::{Cartesian, Forces, Formulation, Spherical};
-use crate::integrate::System;
+use super::Equations;
+use crate::integrate::{AnyStep, Step, System};
+use crate::motion::{Cartesian, Forces, Formulation, Spherical};
 use crate::scalar::Scalar;
-use crate::scenario::Equations;
 
 /// A formulation in numbers of any type: `f64`, or with derivatives.
 pub(crate) trait FormulationIn<P: Scalar, const N: usize>: Formulation<N> {
@@ -57,7 +57,9 @@ pub(crate) trait ForFormulation {
     type Output;
 
     /// The computation with a formulation whose states are `N` numbers.
-    fn with<F: FormulationIn<Self::Number, N>, const N: usize>(self) -> Self::Output;
+    fn with<F: FormulationIn<Self::Number, N>, const N: usize>(self) -> Self::Output
+    where
+        AnyStep: From<Step<N>>;
 }
 
 /// Does a computation with the formulation that a case asks for, whose states hold the heat load or not.

@@ -1,0 +1,3 @@
+//! What is computed from flights and their derivatives.
+
+pub mod dispersions;
