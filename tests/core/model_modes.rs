@@ -212,7 +212,7 @@ fn wind_carries_a_body_at_rest_along() {
         Case { planet, vehicle: vehicle(mass, area, 0.0, drag), initial_state: state.to_planet_fixed(), ..target_2() };
     let (east, north) = (30.0, -20.0);
     let windy = Case { wind: Wind::Constant { east, north }, ..case.clone() };
-    let [still, windy] = [case, windy].map(|case| case.forces().acceleration(0.0, &case.initial_state));
+    let [still, windy] = [case, windy].map(|case| case.forces().acceleration(0.0, &case.initial_state.into()));
     let speed = 1300.0_f64.sqrt();
     let density = 1.547_93 * (-10_000.0_f64 / 6935.0).exp();
     let push = 0.5 * density * speed * area * drag / mass;

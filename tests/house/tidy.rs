@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
-const CORE: [&[&str]; 11] = [
+const CORE: [&[&str]; 12] = [
     &["scalar", "root", "number_text", "interrupt"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],

@@ -214,7 +214,7 @@ impl Theory {
         let r0 = case.planet.equatorial_radius();
         // (76) η = ρSC_D / (2mβ)
         let eta_by_density = reference_area * drag_coefficient / (2.0 * mass * beta);
-        let eta_e = eta_by_density * case.forces().loads(0.0, &case.initial_state).density;
+        let eta_e = eta_by_density * case.forces().loads(0.0, &case.initial_state.into()).density;
 
         let mut faults = solution.vehicle_faults(&case.vehicle, &case.atmosphere, case.density_factor);
         if !case.events.is_empty() {

@@ -221,6 +221,8 @@ fn packed<F, const N: usize, const L: usize>(
 struct StepControl<'a, const N: usize> {
     limits: Limits<'a>,
     magnitudes: [f64; N],
+    /// How many numbers of the state have errors that count: those of a finite magnitude.
+    counted: f64,
     /// Of the last accepted step's end, s.
     time: f64,
     /// Proposed for the next step, s.
@@ -235,9 +237,19 @@ struct StepControl<'a, const N: usize> {
 impl<'a, const N: usize> StepControl<'a, N> {
     fn new<F: StepBounds<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
         let magnitudes = system.magnitudes();
+        #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
+        let counted = magnitudes.iter().filter(|magnitude| magnitude.is_finite()).count() as f64;
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
-        let mut control =
-            Self { limits, magnitudes, time: 0.0, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
+        let mut control = Self {
+            limits,
+            magnitudes,
+            counted,
+            time: 0.0,
+            length: 0.0,
+            stride: 0.0,
+            growth: GREATEST_GROWTH,
+            statistics,
+        };
         control.length = control.first_step(system, state, derivative);
         control
     }
@@ -300,8 +312,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
         if fifth == 0.0 && third == 0.0 {
             return f64::MIN_POSITIVE;
         }
-        #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
-        let denominator = ((fifth + third * 0.01) * N as f64).sqrt();
+        let denominator = ((fifth + third * 0.01) * self.counted).sqrt();
         self.length * fifth / denominator
     }
 

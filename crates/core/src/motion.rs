@@ -7,14 +7,17 @@ mod model_mode;
 mod quantity;
 mod rest;
 mod spherical;
+mod state;
 
 pub use cartesian::Cartesian;
 pub use loads::Loads;
 pub use model_mode::{ModelMode, Switch, TableId};
 pub use spherical::Spherical;
+pub use state::State;
 
 pub(crate) use model_mode::{Chatter, SwitchQuantity};
 pub(crate) use quantity::StateRate;
+pub(crate) use state::MASS;
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -117,31 +120,15 @@ pub struct Parameters<P> {
     pub bank_angle: P,
 }
 
-/// A thrust that acts, and the rate at which it burns propellant, over the mass of the vehicle at a given instant.
+/// A thrust that acts, over the mass of the vehicle at the start of the phase, and the mass that it burns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Burn<P> {
     /// The direction of the thrust.
     pub along: ThrustAxis,
-    /// The instant of that mass, s.
-    pub since: P,
-    /// The thrust over that mass, m/s².
+    /// The thrust over the mass at the start of the phase, m/s².
     pub acceleration: P,
-    /// The mass flow over that mass, 1/s.
-    pub flow: P,
-}
-
-impl<P: Scalar> Burn<P> {
-    /// The mass at the instant `since` divided by the mass at `time`, s. The mass flow is constant.
-    #[inline(always)]
-    fn mass_ratio<S: Over<P>>(&self, time: S) -> S {
-        self.mass_left(time).recip()
-    }
-
-    /// The mass at `time`, s, divided by the mass at the instant `since`.
-    #[inline(always)]
-    fn mass_left<S: Over<P>>(&self, time: S) -> S {
-        S::one() - (time + -self.since) * self.flow
-    }
+    /// The mass flow, kg/s.
+    pub mass_flow: P,
 }
 
 /// Powers over the mass, W/kg, or their work, J/kg.
@@ -153,16 +140,17 @@ pub(crate) struct Power {
     pub(crate) thrust: f64,
 }
 
-/// A formulation: `N` numbers that hold the state, and how they change. Six hold place and motion; a seventh is the heat load, J/m².
+/// A formulation: `N` numbers that hold the state, and how they change. Six hold place and motion; with eight, the seventh is the mass, kg,
+/// and the eighth the heat load, J/m².
 pub trait Formulation<const N: usize>: StepBounds<N> {
     /// The numbers of a state.
-    fn coordinates<S: Scalar>(state: &PlanetFixed<S>, heat_load: S) -> [S; N];
+    fn numbers<S: Scalar>(state: &State<S>) -> [S; N];
 
-    /// The state of the numbers, without the heat load.
-    fn planet_fixed<S: Scalar>(coordinates: &[S; N]) -> PlanetFixed<S>;
+    /// The state of the numbers.
+    fn state<S: Scalar>(numbers: &[S; N]) -> State<S>;
 
     /// The singularity of the equations that lies `within` this distance of a state: rad, or parts of the circular speed.
-    fn singularity(&self, coordinates: &[f64; N], within: f64) -> Option<Singularity>;
+    fn singularity(&self, numbers: &[f64; N], within: f64) -> Option<Singularity>;
 
     /// The forces in its equations.
     fn forces(&self) -> &Forces;
@@ -173,21 +161,6 @@ pub trait Formulation<const N: usize>: StepBounds<N> {
 
 /// The heat load, J/m², of an entry from orbit: a smaller one is as exact as if it were this.
 const HEAT_LOAD: f64 = 1e8;
-
-/// Six numbers, and as the seventh, where there is one, the heat load.
-fn with_heat_load<S: Scalar, const N: usize>(coordinates: [S; 6], heat_load: S) -> [S; N] {
-    std::array::from_fn(|i| if i < 6 { coordinates[i] } else { heat_load })
-}
-
-/// The first six numbers.
-fn without_heat_load<S: Scalar, const N: usize>(coordinates: &[S; N]) -> [S; 6] {
-    std::array::from_fn(|i| coordinates[i])
-}
-
-/// The heat load, J/m², where the numbers have one.
-pub(crate) fn heat_load<const N: usize>(coordinates: &[f64; N]) -> Option<f64> {
-    coordinates.get(6).copied()
-}
 
 /// Where the spherical equations divide by zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,6 +183,8 @@ struct Flow<S: nalgebra::Scalar> {
     ground_speed: S,
     /// The density over that of the parameters, kg/m³, and the Mach number, where something depends on it.
     density_and_mach: Option<(S, S)>,
+    /// The mass at the start of the phase over the mass, where a thrust acts and the mass is integrated.
+    mass_ratio: Option<S>,
 }
 
 /// What a unit of density does to the vehicle, at full lift: accelerations over the density, m⁴/(kg s²).
@@ -274,7 +249,7 @@ impl<P: Scalar> Forces<P> {
     /// # Reference
     /// Jameson 2006, equations 17 and 21 to 23, without the step to the vehicle-pointing axes.
     #[inline(always)]
-    pub fn acceleration<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+    pub fn acceleration<S: Over<P>>(&self, time: S, state: &State<S>) -> Vector3<S> {
         if self.of_thesis {
             self.acceleration_by::<true, S>(time, state)
         } else {
@@ -284,23 +259,18 @@ impl<P: Scalar> Forces<P> {
 
     /// Not inlined: the models that the thesis does not have would be in the way of those that it has.
     #[inline(never)]
-    fn acceleration_by_any<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+    fn acceleration_by_any<S: Over<P>>(&self, time: S, state: &State<S>) -> Vector3<S> {
         self.acceleration_by::<false, S>(time, state)
     }
 
     #[inline(always)]
-    fn acceleration_by<const THESIS: bool, S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
+    fn acceleration_by<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>) -> Vector3<S> {
         self.acceleration_in::<THESIS, _>(time, state, &self.flow::<THESIS, _>(state))
     }
 
     #[inline(always)]
-    fn acceleration_in<const THESIS: bool, S: Over<P>>(
-        &self,
-        time: S,
-        state: &PlanetFixed<S>,
-        flow: &Flow<S>,
-    ) -> Vector3<S> {
-        let PlanetFixed { position, velocity } = state;
+    fn acceleration_in<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Vector3<S> {
+        let State { position, velocity, .. } = state;
         let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
         let Directions { radius, up, .. } = &flow.directions;
@@ -314,13 +284,51 @@ impl<P: Scalar> Forces<P> {
         }
     }
 
+    /// The mass at the start of the phase over the mass, where a thrust acts and the mass is integrated.
+    #[inline(always)]
+    fn mass_ratio<S: Over<P>>(&self, mass: Option<S>) -> Option<S> {
+        let mass = mass.filter(|_| self.burn.is_some())?;
+        Some(mass.recip() * self.mass)
+    }
+
+    /// The rate of change of the mass, kg/s.
+    #[inline(always)]
+    fn mass_rate<S: Over<P>>(&self) -> S {
+        self.burn.as_ref().map_or(S::zero(), |burn| S::zero() + -burn.mass_flow)
+    }
+
+    /// The sizes below which numbers of a state are as exact as if they had them. Errors of the mass do not count, which grows and falls
+    /// evenly, and none of a heat load for which nobody asked.
+    fn magnitudes<const N: usize>(&self, coordinates: [f64; 6]) -> [f64; N] {
+        let heat_load = Some(if self.models.heating.is_some() { HEAT_LOAD } else { f64::INFINITY });
+        State { mass: Some(f64::INFINITY), heat_load, ..State::from(PlanetFixed::from([0.0; 6])) }.numbers(coordinates)
+    }
+
     /// The acceleration, and the heat flux into the stagnation point, W/m², of the air that meets the vehicle.
     #[inline(always)]
-    fn acceleration_and_heat_flux<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> (Vector3<S>, S) {
+    fn acceleration_and_heat_flux<S: Over<P>>(&self, time: S, state: &State<S>) -> (Vector3<S>, S) {
         let flow = self.flow::<false, _>(state);
         let acceleration = self.acceleration_in::<false, _>(time, state, &flow);
-        let heat_flux = self.heat_flux(self.density::<false, _>(&flow), flow.directions.speed);
-        (acceleration, heat_flux.map_or(S::zero(), |flux| flux.total()))
+        (acceleration, self.heat_flux_of(&flow))
+    }
+
+    /// Into the stagnation point in a state, W/m²; none where no heating is asked for.
+    #[inline(always)]
+    fn heat_flux_in<S: Over<P>>(&self, state: &State<S>) -> S {
+        if self.models.heating.is_none() {
+            return S::zero();
+        }
+        self.heat_flux_of(&self.flow::<false, _>(state))
+    }
+
+    /// The same, of the air that meets the vehicle.
+    #[inline(always)]
+    fn heat_flux_of<S: Over<P>>(&self, flow: &Flow<S>) -> S {
+        if self.models.heating.is_none() {
+            return S::zero();
+        }
+        let heat_flux = self.heat_flux(self.density::<false, _>(flow), flow.directions.speed);
+        heat_flux.map_or(S::zero(), |flux| flux.total())
     }
 
     /// Into the stagnation point, in air of a density, kg/m³, at a speed relative to it, m/s.
@@ -336,10 +344,10 @@ impl<P: Scalar> Forces<P> {
     /// K. D. Hicks, Introduction to Astrodynamic Reentry, 2006, page 58, to which Jameson 2006 points in its last chapter: the thrust
     /// stands beside lift and drag; here it is constant and along one of a few directions.
     #[inline(always)]
-    fn thrust<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> Option<Vector3<S>> {
+    fn thrust<S: Over<P>>(&self, time: S, state: &State<S>) -> Option<Vector3<S>> {
         let burn = self.burn.as_ref()?;
-        let acceleration = burn.mass_ratio(time) * burn.acceleration;
-        Some(along(burn.along, &self.models.planet, time, state) * acceleration)
+        let acceleration = self.mass_ratio(state.mass).unwrap_or_else(S::one) * burn.acceleration;
+        Some(along(burn.along, &self.models.planet, time, &state.planet_fixed()) * acceleration)
     }
 
     /// Lift and drag over the mass, m/s².
@@ -367,14 +375,14 @@ impl<P: Scalar> Forces<P> {
 
     /// The air that meets a vehicle in a state.
     #[inline(always)]
-    fn flow<const THESIS: bool, S: Over<P>>(&self, state: &PlanetFixed<S>) -> Flow<S> {
-        let PlanetFixed { position, velocity } = state;
+    fn flow<const THESIS: bool, S: Over<P>>(&self, state: &State<S>) -> Flow<S> {
+        let State { position, velocity, .. } = state;
         let altitude = self.models.planet.shape.altitude(position);
         match self.wind::<THESIS, _>(altitude) {
             None => {
                 let directions = Directions::of(position, velocity);
                 let ground_speed = directions.speed;
-                self.flow_of::<THESIS, _>(altitude, directions, ground_speed)
+                self.flow_of::<THESIS, _>(altitude, directions, ground_speed, state.mass)
             }
             Some([east, north]) => {
                 let [x, y, z] = [position.x, position.y, position.z];
@@ -388,12 +396,12 @@ impl<P: Scalar> Forces<P> {
                 let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
                 let north = to_north * (over_equatorial * over_radius * north);
                 let directions = Directions::of(position, &(velocity - east - north));
-                self.flow_of::<THESIS, _>(altitude, directions, length(velocity))
+                self.flow_of::<THESIS, _>(altitude, directions, length(velocity), state.mass)
             }
         }
     }
 
-    /// The air at an altitude, m, that meets a vehicle in the directions of its velocity relative to the air, at a speed relative to
+    /// The air at an altitude, m, that meets a vehicle of a mass, kg, in the directions of its velocity relative to the air, at a speed relative to
     /// the planet, m/s.
     #[inline(always)]
     fn flow_of<const THESIS: bool, S: Over<P>>(
@@ -401,6 +409,7 @@ impl<P: Scalar> Forces<P> {
         altitude: S,
         directions: Directions<S>,
         ground_speed: S,
+        mass: Option<S>,
     ) -> Flow<S> {
         let density_and_mach = (!THESIS && self.by_mach).then(|| {
             let (density, sound) = self.models.atmosphere.density_and_sound(
@@ -410,7 +419,8 @@ impl<P: Scalar> Forces<P> {
             );
             (density, directions.speed * sound.recip())
         });
-        Flow { altitude, directions, ground_speed, density_and_mach }
+        let mass_ratio = if THESIS { None } else { self.mass_ratio(mass) };
+        Flow { altitude, directions, ground_speed, density_and_mach, mass_ratio }
     }
 
     /// The wind at an altitude, m, to the east and to the north, m/s.
@@ -441,8 +451,8 @@ impl<P: Scalar> Forces<P> {
     fn air<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Air<S> {
         let speed = flow.directions.speed;
         let pressure = speed * speed * 0.5;
-        let over_mass = |force_over_mass: S| match &self.burn {
-            Some(burn) if !THESIS => force_over_mass * burn.mass_ratio(time),
+        let over_mass = |force_over_mass: S| match flow.mass_ratio {
+            Some(mass_ratio) if !THESIS => force_over_mass * mass_ratio,
             _ => force_over_mass,
         };
         let acceleration = over_mass(pressure * self.area_over_mass);
@@ -571,8 +581,8 @@ impl Forces {
     /// to the sensible atmosphere and some scale heights more.
     /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
     /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
-    fn longest_step(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
-        let PlanetFixed { position, velocity } = state;
+    fn longest_step(&self, time: f64, state: &State<f64>) -> f64 {
+        let State { position, velocity, .. } = state;
         let flow = self.flow::<false, _>(state);
         let radius = length(position);
         let to_air = (flow.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
@@ -593,7 +603,7 @@ impl Forces {
     }
 
     /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.
-    pub(crate) fn power(&self, time: f64, state: &PlanetFixed<f64>) -> Power {
+    pub(crate) fn power(&self, time: f64, state: &State<f64>) -> Power {
         let aerodynamic = self.aerodynamic::<false, _>(time, &self.flow::<false, _>(state));
         let thrust = self.thrust(time, state).map_or(0.0, |thrust| thrust.dot(&state.velocity));
         Power { drag: -aerodynamic.dot(&state.velocity), thrust }

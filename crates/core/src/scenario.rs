@@ -21,7 +21,7 @@ use crate::control::{Command, Control};
 use crate::coordinates::{GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
-use crate::motion::{Forces, Models, Parameters};
+use crate::motion::{Forces, Models, Parameters, State};
 use crate::number_text::apart;
 use crate::planet::Planet;
 use crate::scalar::Scalar;
@@ -271,7 +271,7 @@ impl Scenario {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
             }
-            let loads = case.forces().loads(0.0, state);
+            let loads = case.forces().loads(0.0, &State::from(*state));
             if !(loads.deceleration.is_finite() && loads.load_factor.is_finite()) {
                 faults.push(Fault::InfiniteAcceleration);
             }
@@ -324,7 +324,7 @@ impl Case {
     pub fn forces(&self) -> Forces {
         let mut forces = Phase::first(self).forces(self);
         // The flight refuses a start at which no mode holds.
-        let _ = forces.enter_mode_of(0.0, &self.initial_state);
+        let _ = forces.enter_mode_of(0.0, &State::from(self.initial_state));
         forces
     }
 
@@ -347,6 +347,16 @@ impl Case {
             || effects
                 .filter_map(|effect| effect.engine)
                 .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along.is_level()))
+    }
+
+    /// Whether states have to hold mass and heat load: the flight is heated, or a thrust burns propellant.
+    pub(crate) fn has_mass_and_heat_load(&self) -> bool {
+        self.heating.is_some() || self.burns_propellant()
+    }
+
+    /// Whether a thrust burns propellant.
+    pub(crate) fn burns_propellant(&self) -> bool {
+        self.events.iter().filter_map(|event| event.then.thrust()).any(|thrust| thrust.specific_impulse.is_some())
     }
 
     /// Whether anything is watched on the way, beside the stop altitude and the formulas of the models.

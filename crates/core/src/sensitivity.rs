@@ -83,11 +83,14 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<S
         with_ground_distance: false,
         interrupt,
     };
-    let Some([Some(end)]) = dispatch(case.solver.equations, waits_for_heat_load(case), follow)?.first_chunk().cloned()
+    let Some([Some(end)]) =
+        dispatch(case.solver.equations, case.burns_propellant() || waits_for_heat_load(case), follow)?
+            .first_chunk()
+            .cloned()
     else {
         return Ok(Sensitivities::NONE);
     };
-    let path = FlightPath::from_planet_fixed(&end.state);
+    let path = FlightPath::from_planet_fixed(&end.state.planet_fixed());
     let is_ballistic = case.vehicle.is_ballistic();
     let gradient = |output: variation::Dual<INPUTS>| {
         let slopes: [f64; INPUTS] = match output.eps.0 {

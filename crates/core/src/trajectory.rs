@@ -25,7 +25,7 @@ use crate::coordinates::{
 use crate::heating;
 use crate::integrate::Statistics;
 use crate::interrupt::Interrupt;
-use crate::motion::{Cartesian, Forces, Loads, ModelMode, Spherical, WIND_FADE_ANGLE};
+use crate::motion::{Cartesian, Forces, Loads, ModelMode, Spherical, State, WIND_FADE_ANGLE};
 use crate::planet::Planet;
 use crate::scenario::{Case, Equations, Phase};
 use crate::wind::Wind;
@@ -299,8 +299,7 @@ impl FlightPoint {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant {
     pub(crate) time: f64,
-    pub(crate) state: PlanetFixed<f64>,
-    pub(crate) heat_load: Option<f64>,
+    pub(crate) state: State<f64>,
     /// The number of the phase.
     pub(crate) phase: usize,
     pub(crate) mode: ModelMode,
@@ -370,8 +369,7 @@ impl InsideStep<'_> {
     pub(crate) fn point(&self, part: f64) -> FlightPoint {
         let Self { flight, step, motion, interpolant } = self;
         let time = step.time(part);
-        let (state, heat_load) = interpolant.at(motion, time);
-        flight.point(motion.forces(), step.phase, time, &state, heat_load)
+        flight.point(motion.forces(), step.phase, time, &interpolant.at(motion, time))
     }
 }
 
@@ -491,8 +489,8 @@ impl Trajectory {
             _ if time <= 0.0 => self.flown.start,
             Some(step) => {
                 let motion = self.motion(step);
-                let (state, heat_load) = motion.interpolant(&step.step).at(&motion, time);
-                Instant { time, state, heat_load, phase: step.phase, mode: step.mode }
+                let state = motion.interpolant(&step.step).at(&motion, time);
+                Instant { time, state, phase: step.phase, mode: step.mode }
             }
             None => self.flown.end,
         }
@@ -528,8 +526,7 @@ impl Trajectory {
                             known.insert((following, motion, interpolant))
                         }
                     };
-                    let (state, heat_load) = interpolant.at(motion, time);
-                    self.point(motion.forces(), step.phase, time, &state, heat_load)
+                    self.point(motion.forces(), step.phase, time, &interpolant.at(motion, time))
                 }
                 None => self.last(),
             }
@@ -578,7 +575,7 @@ impl Trajectory {
     fn ground_track_until(&self, is_interrupted: impl Fn() -> bool) -> Option<GroundTrack> {
         let mut track = GroundTrack::default();
         let mut known: Option<(Motion, &StoredStep)> = None;
-        let mut state = self.flown.start.state;
+        let mut state = self.flown.start.state.planet_fixed();
         for step in &self.flown.steps {
             if is_interrupted() {
                 return None;
@@ -597,19 +594,12 @@ impl Trajectory {
     }
 
     fn point_of(&self, instant: &Instant) -> FlightPoint {
-        let Instant { time, state, heat_load, phase, mode } = instant;
-        self.point(&self.forces(*phase, *mode), *phase, *time, state, *heat_load)
+        let Instant { time, state, phase, mode } = instant;
+        self.point(&self.forces(*phase, *mode), *phase, *time, state)
     }
 
-    fn point(
-        &self,
-        forces: &Forces,
-        phase: usize,
-        time: f64,
-        state: &PlanetFixed<f64>,
-        heat_load: Option<f64>,
-    ) -> FlightPoint {
-        self.point_from(&self.origin, forces, &self.flown.phases[phase], time, state, heat_load)
+    fn point(&self, forces: &Forces, phase: usize, time: f64, state: &State<f64>) -> FlightPoint {
+        self.point_from(&self.origin, forces, &self.flown.phases[phase], time, state)
     }
 
     /// The point of a state near the flight, which may have set out from another origin, and fly under other forces in another phase; its
@@ -620,15 +610,15 @@ impl Trajectory {
         forces: &Forces,
         phase: &Phase,
         time: f64,
-        state: &PlanetFixed<f64>,
-        heat_load: Option<f64>,
+        state: &State<f64>,
     ) -> FlightPoint {
         let planet = forces.planet();
-        let flight_path = FlightPath::from_planet_fixed(state).wrapped();
+        let planet_fixed = state.planet_fixed();
+        let flight_path = FlightPath::from_planet_fixed(&planet_fixed).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &planet.shape);
         let AtmosphereSample { temperature, pressure, speed_of_sound, .. } = forces.air_at(state);
         let [bank_angle, angle_of_attack] = forces.angles(time, state);
-        let inertial = Inertial::from_planet_fixed(state, planet, 0.0);
+        let inertial = Inertial::from_planet_fixed(&planet_fixed, planet, 0.0);
         let climb = inertial.position.dot(&inertial.velocity);
         let across = inertial.position.cross(&inertial.velocity).norm();
         let track = self.ground_track.get_or_init(|| self.ground_track_until(|| false).unwrap_or_default());
@@ -661,9 +651,9 @@ impl Trajectory {
             // By the place itself, from which it is exactly 0 away.
             ground_range: from.cross(&state.position).norm().atan2(from.dot(&state.position)) * sphere,
             ground_distance: length * sphere,
-            mass: phase.mass(time),
+            mass: state.mass.unwrap_or(phase.vehicle.mass),
             thrust: phase.thrust.map_or(0.0, |thrust| thrust.force.abs()),
-            heat_load,
+            heat_load: state.heat_load.filter(|_| forces.heating().is_some()),
             wall_temperature: wall.map(|(nose, flux)| nose.wall_temperature(flux.total())),
         }
     }

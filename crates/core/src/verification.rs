@@ -66,7 +66,7 @@ fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64
             return Err(SimulationError::Interrupted { time: start });
         }
         while let Some(record) = event_records.next_if(|record| record.before.time <= start) {
-            given += energy(&record.after.state) - energy(&record.before.state);
+            given += energy(&record.after.state.planet_fixed()) - energy(&record.before.state.planet_fixed());
         }
         // A step that ends where it begins has nothing inside.
         if start >= end {
@@ -77,12 +77,12 @@ fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64
         let half = (end - start) / 2.0;
         for (abscissa, weight) in GAUSS {
             for time in [start + half * (1.0 - abscissa), start + half * (1.0 + abscissa)] {
-                let Power { drag, thrust } = motion.forces().power(time, &interpolant.at(&motion, time).0);
+                let Power { drag, thrust } = motion.forces().power(time, &interpolant.at(&motion, time));
                 work.drag += half * weight * drag;
                 work.thrust += half * weight * thrust;
             }
         }
-        drift = drift.max((energy(&motion.end(&step.step)) + work.drag - work.thrust - given).abs());
+        drift = drift.max((energy(&motion.end(&step.step).planet_fixed()) + work.drag - work.thrust - given).abs());
     }
     Ok((drift, work))
 }

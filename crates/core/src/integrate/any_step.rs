@@ -2,24 +2,24 @@
 
 use super::Step;
 
-/// A step, with or without the heat load.
+/// A step of states of place and motion alone, or with mass and heat load.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyStep {
-    /// States of place and motion.
-    Unheated(Step<6>),
-    /// States with the heat load.
-    Heated(Step<7>),
+    /// Of place and motion.
+    Six(Step<6>),
+    /// With mass and heat load.
+    Eight(Step<8>),
 }
 
 impl From<Step<6>> for AnyStep {
     fn from(step: Step<6>) -> Self {
-        Self::Unheated(step)
+        Self::Six(step)
     }
 }
 
-impl From<Step<7>> for AnyStep {
-    fn from(step: Step<7>) -> Self {
-        Self::Heated(step)
+impl From<Step<8>> for AnyStep {
+    fn from(step: Step<8>) -> Self {
+        Self::Eight(step)
     }
 }
 
@@ -27,24 +27,24 @@ impl AnyStep {
     /// s.
     pub(crate) fn start_time(&self) -> f64 {
         match self {
-            Self::Unheated(step) => step.start_time,
-            Self::Heated(step) => step.start_time,
+            Self::Six(step) => step.start_time,
+            Self::Eight(step) => step.start_time,
         }
     }
 
     /// s.
     pub(crate) fn end_time(&self) -> f64 {
         match self {
-            Self::Unheated(step) => step.end_time,
-            Self::Heated(step) => step.end_time,
+            Self::Six(step) => step.end_time,
+            Self::Eight(step) => step.end_time,
         }
     }
 
     /// The instant at a part of the step, s.
     pub(crate) fn time(&self, part: f64) -> f64 {
         match self {
-            Self::Unheated(step) => step.time(part),
-            Self::Heated(step) => step.time(part),
+            Self::Six(step) => step.time(part),
+            Self::Eight(step) => step.time(part),
         }
     }
 }

@@ -1,9 +1,8 @@
 //! What acts on the vehicle at an instant, and what an event may wait for.
 
 use super::directions::{Directions, lift_fade_over_cosine};
-use super::{Flow, Forces, Parameters, Switch};
+use super::{Flow, Forces, Parameters, State, Switch};
 use crate::atmosphere::AtmosphereSample;
-use crate::coordinates::PlanetFixed;
 use crate::event::Quantity;
 use crate::heating::{HeatFlux, Stagnation};
 use crate::planet::Pull;
@@ -57,8 +56,8 @@ impl<S: Scalar> Loads<S> {
 
 impl<P: Scalar> Forces<P> {
     /// The loads in a state.
-    pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &PlanetFixed<S>) -> Loads<S> {
-        let PlanetFixed { position, velocity } = state;
+    pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &State<S>) -> Loads<S> {
+        let State { position, velocity, .. } = state;
         let mut flow = self.flow::<false, _>(state);
         if flow.density_and_mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
             let (density, sound) = self.models.atmosphere.density_and_sound(
@@ -100,7 +99,7 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The force that is not gravity over the weight at standard gravity.
-    fn load_factor<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>, flow: &Flow<S>, dynamic_pressure: S) -> S {
+    fn load_factor<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>, dynamic_pressure: S) -> S {
         if let Some(thrust) = self.thrust(time, state) {
             return length(&(self.aerodynamic::<false, _>(time, flow) + thrust)) * STANDARD_GRAVITY.recip();
         }
@@ -125,7 +124,7 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
-    pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &PlanetFixed<S>) -> S {
+    pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &State<S>) -> S {
         let left = self.flow::<false, _>(state).directions.left;
         left.dot(&left)
     }
@@ -138,13 +137,13 @@ impl Forces {
     }
 
     /// The angles at which the vehicle flies in a state: σ and α, rad.
-    pub fn angles(&self, time: f64, state: &PlanetFixed<f64>) -> [f64; 2] {
+    pub fn angles(&self, time: f64, state: &State<f64>) -> [f64; 2] {
         let flow = self.flow::<false, _>(state);
         [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
     }
 
     /// The air in a state, as far as the atmosphere knows it.
-    pub fn air_at(&self, state: &PlanetFixed<f64>) -> AtmosphereSample<f64> {
+    pub fn air_at(&self, state: &State<f64>) -> AtmosphereSample<f64> {
         let altitude = self.models.planet.shape.altitude(&state.position);
         let sample = self.models.atmosphere.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere);
         // By the law of gases, denser air of the same temperature presses harder.

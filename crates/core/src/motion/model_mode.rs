@@ -6,10 +6,9 @@
 
 use num_dual::Dual64;
 
-use super::{Flow, Forces};
+use super::{Flow, Forces, State};
 use crate::atmosphere::Atmosphere;
 use crate::control::Against;
-use crate::coordinates::PlanetFixed;
 use crate::scalar::{Over, Scalar};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
@@ -156,7 +155,7 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// Of every switch the quantity in a state; zero where there is none.
-    pub(crate) fn readings<S: Over<P>>(&self, time: S, state: &PlanetFixed<S>) -> [S; Switch::ALL.len()] {
+    pub(crate) fn readings<S: Over<P>>(&self, time: S, state: &State<S>) -> [S; Switch::ALL.len()] {
         if !self.has_switches {
             return [S::zero(); Switch::ALL.len()];
         }
@@ -215,7 +214,7 @@ impl Forces {
     }
 
     /// Which switch leads from the present mode to the next one, in a state at their boundary: that which is nearest to its own.
-    pub(crate) fn first_to_turn(&self, next: ModelMode, time: f64, state: &PlanetFixed<f64>) -> Option<Switch> {
+    pub(crate) fn first_to_turn(&self, next: ModelMode, time: f64, state: &State<f64>) -> Option<Switch> {
         let readings = self.readings(time, state);
         let distance = |switch: &Switch| {
             let (quantity, _) = self.boundaries(*switch)?;
@@ -238,7 +237,7 @@ impl Forces {
     ///
     /// # Errors
     /// When there is none: on either side of a boundary the motion leads back across it.
-    pub(crate) fn enter_mode_of(&mut self, time: f64, state: &PlanetFixed<f64>) -> Result<(), Chatter> {
+    pub(crate) fn enter_mode_of(&mut self, time: f64, state: &State<f64>) -> Result<(), Chatter> {
         if !self.has_switches {
             return Ok(());
         }
@@ -255,11 +254,13 @@ impl Forces {
     }
 
     /// The mode to which the forces of the present one lead.
-    fn mode_ahead(&self, time: f64, state: &PlanetFixed<f64>) -> ModelMode {
+    fn mode_ahead(&self, time: f64, state: &State<f64>) -> ModelMode {
         let acceleration = self.acceleration(time, state);
-        let moving = PlanetFixed {
+        let moving = State {
             position: state.position.zip_map(&state.velocity, Dual64::new),
             velocity: state.velocity.zip_map(&acceleration, Dual64::new),
+            mass: state.mass.map(|mass| Dual64::new(mass, self.mass_rate())),
+            heat_load: None,
         };
         let readings = self.readings(Dual64::new(time, 1.0), &moving);
         ModelMode(Switch::ALL.map(|switch| {

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use num_dual::Dual64;
 
-use super::{Burn, Forces, Formulation, moving};
-use crate::coordinates::{GreatCircle, PlanetFixed};
+use super::{Forces, Formulation, State, moving};
+use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::planet::Planet;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
@@ -14,16 +14,13 @@ use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
 pub(crate) struct StateRate<S: nalgebra::Scalar = Dual64> {
     /// s.
     pub(crate) time: S,
-    /// Place and motion.
-    pub(crate) state: PlanetFixed<S>,
-    /// J/m²; 0 where no heating is asked for.
-    pub(crate) heat_load: S,
+    pub(crate) state: State<S>,
 }
 
 impl<S: Scalar> StateRate<S> {
     /// Of a formulation's numbers.
     pub(crate) fn at<F: Formulation<N>, const N: usize>(time: S, state: &[S; N]) -> Self {
-        Self { time, state: F::planet_fixed(state), heat_load: state.get(6).copied().unwrap_or_else(S::zero) }
+        Self { time, state: F::state(state) }
     }
 }
 
@@ -46,15 +43,15 @@ impl<P: Scalar> Forces<P> {
         at: &StateRate<S>,
         track: &GreatCircle<S>,
     ) -> S {
-        let StateRate { time, state, heat_load } = at;
-        let PlanetFixed { position, velocity } = state;
+        let StateRate { time, state } = at;
+        let State { position, velocity, mass, heat_load } = state;
         let planet = &self.models.planet;
         match quantity {
             Quantity::Time => *time,
             Quantity::Altitude => planet.shape.altitude(position),
             Quantity::Speed => length(velocity),
             Quantity::FlightPathAngle => position.dot(velocity).atan2(length(&position.cross(velocity))),
-            Quantity::Mass => self.mass(*time),
+            Quantity::Mass => mass.unwrap_or_else(|| S::zero() + self.mass),
             Quantity::InertialSpeed => length(&inertial_velocity(planet, state)),
             Quantity::SpecificEnergy => {
                 let velocity = inertial_velocity(planet, state);
@@ -67,7 +64,7 @@ impl<P: Scalar> Forces<P> {
                 let level = (momentum.x * momentum.x + momentum.y * momentum.y).sqrt();
                 level.atan2(momentum.z)
             }
-            Quantity::HeatLoad => *heat_load,
+            Quantity::HeatLoad => heat_load.unwrap_or_else(S::zero),
             Quantity::Downrange => {
                 track.along_and_across(position).map_or(S::zero(), |[along, _]| along * planet.equatorial_radius())
             }
@@ -85,17 +82,11 @@ impl<P: Scalar> Forces<P> {
             }
         }
     }
-
-    /// The mass of the vehicle, kg.
-    fn mass<S: Over<P>>(&self, time: S) -> S {
-        let left = self.burn.as_ref().map_or(S::one(), |burn: &Burn<P>| burn.mass_left(time));
-        left * self.mass
-    }
 }
 
 /// Relative to inertial space, in components of the planet-fixed frame, m/s.
-fn inertial_velocity<S: Scalar>(planet: &Planet, state: &PlanetFixed<S>) -> Vector3<S> {
-    let PlanetFixed { position, velocity } = state;
+fn inertial_velocity<S: Scalar>(planet: &Planet, state: &State<S>) -> Vector3<S> {
+    let State { position, velocity, .. } = state;
     let rate = planet.rotation_rate;
     Vector3::new(velocity.x - position.y * rate, velocity.y + position.x * rate, velocity.z)
 }
@@ -108,7 +99,7 @@ fn inertial_velocity<S: Scalar>(planet: &Planet, state: &PlanetFixed<S>) -> Vect
 ///
 /// # Reference
 /// D. A. Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., 2013, section 2.4.
-fn apsides<S: Scalar<Mask = bool>>(planet: &Planet, state: &PlanetFixed<S>) -> [S; 2] {
+fn apsides<S: Scalar<Mask = bool>>(planet: &Planet, state: &State<S>) -> [S; 2] {
     let position = &state.position;
     let velocity = inertial_velocity(planet, state);
     let over_parameter = planet.orbital_gravitational_parameter.recip();

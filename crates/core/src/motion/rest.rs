@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Burn, Forces};
-use crate::coordinates::PlanetFixed;
+use super::{Burn, Forces, State};
 use crate::propulsion::ThrustAxis;
 use crate::scalar::length;
 
@@ -14,7 +13,7 @@ const WAY_TO_REST: f64 = 0.9;
 
 impl Forces {
     /// Whether the vehicle is at rest, as far as steps resolve it.
-    pub(crate) fn is_at_rest(&self, state: &PlanetFixed<f64>) -> bool {
+    pub(crate) fn is_at_rest(&self, state: &State<f64>) -> bool {
         let [_, circular_speed] = self.units();
         length(&state.velocity) <= AT_REST * circular_speed
     }
@@ -29,17 +28,17 @@ impl Forces {
 
     /// Whether a vehicle that the thrust brings to rest here stays at rest: the thrust acts against the velocity, and is as great as all
     /// other forces together on the vehicle at rest, so that it stops every motion as it begins.
-    pub(crate) fn brakes_to_rest(&self, time: f64, state: &PlanetFixed<f64>) -> bool {
+    pub(crate) fn brakes_to_rest(&self, time: f64, state: &State<f64>) -> bool {
         let brakes = |burn: &&Burn<f64>| burn.along == ThrustAxis::Velocity && burn.acceleration < 0.0;
         self.burn.as_ref().filter(brakes).is_some_and(|burn| {
-            let still = PlanetFixed { velocity: Vector3::zeros(), ..*state };
-            self.acceleration(time, &still).norm() <= -burn.acceleration * burn.mass_ratio(time)
+            let still = State { velocity: Vector3::zeros(), ..*state };
+            self.acceleration(time, &still).norm() <= -burn.acceleration * self.mass_ratio(state.mass).unwrap_or(1.0)
         })
     }
 
     /// The longest step before a braking thrust brings the vehicle to rest, s: beyond, the thrust would push it the other way, and there
     /// an integrator grinds its steps down.
-    pub(super) fn longest_braking(&self, time: f64, state: &PlanetFixed<f64>) -> f64 {
+    pub(super) fn longest_braking(&self, time: f64, state: &State<f64>) -> f64 {
         if !self.brakes_to_rest(time, state) {
             return f64::INFINITY;
         }

@@ -3,44 +3,51 @@
 use nalgebra::Vector3;
 
 use super::directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
-use super::{Forces, Formulation, HEAT_LOAD, Singularity, with_heat_load, without_heat_load};
-use crate::coordinates::{FlightPath, PlanetFixed};
+use super::state::coordinates;
+use super::{Forces, Formulation, Singularity, State};
+use crate::coordinates::FlightPath;
 use crate::integrate::{StepBounds, System};
 use crate::planet::Pull;
 use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar};
 
-/// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad.
+/// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad, and maybe mass and heat load.
 #[derive(Clone, Debug)]
 pub struct Spherical<P = f64>(pub Forces<P>);
 
 impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     #[inline(always)]
     fn derivative(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
-        if self.0.of_thesis { self.rates::<true, S>(time, coordinates) } else { self.rates_by_any(time, coordinates) }
+        if self.0.of_thesis {
+            self.rates::<true, S>(time, coordinates, None)
+        } else {
+            self.rates_by_any(time, coordinates, None)
+        }
     }
 }
 
-/// With the heat load, J/m², as the seventh number.
-impl<P: Scalar, S: Over<P>> System<S, 7> for Spherical<P> {
+/// With the mass, kg, and the heat load, J/m².
+impl<P: Scalar, S: Over<P>> System<S, 8> for Spherical<P> {
     #[inline(always)]
-    fn derivative(&self, time: S, coordinates: &[S; 7]) -> [S; 7] {
-        let coordinates = without_heat_load(coordinates);
-        let (_, heat_flux) = self.0.acceleration_and_heat_flux(time, &FlightPath::from(coordinates).to_planet_fixed());
-        with_heat_load(self.rates_by_any(time, &coordinates), heat_flux)
+    fn derivative(&self, time: S, numbers: &[S; 8]) -> [S; 8] {
+        let coordinates = coordinates(numbers);
+        let state = State::of(FlightPath::from(coordinates).to_planet_fixed(), numbers);
+        let rates = self.rates_by_any(time, &coordinates, state.mass);
+        let [mass, heat_load] = [self.0.mass_rate(), self.0.heat_flux_in(&state)].map(Some);
+        State { mass, heat_load, ..state }.numbers(rates)
     }
 }
 
 impl<P: Scalar> Spherical<P> {
     /// Not inlined, for the sake of the models of the thesis.
     #[inline(never)]
-    fn rates_by_any<S: Over<P>>(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
-        self.rates::<false, S>(time, coordinates)
+    fn rates_by_any<S: Over<P>>(&self, time: S, coordinates: &[S; 6], mass: Option<S>) -> [S; 6] {
+        self.rates::<false, S>(time, coordinates, mass)
     }
 
     /// Jameson 2006, equations 9 to 11 and 29 to 31, as printed in the text, with forces of any direction.
     #[inline(always)]
-    fn rates<const THESIS: bool, S: Over<P>>(&self, time: S, coordinates: &[S; 6]) -> [S; 6] {
+    fn rates<const THESIS: bool, S: Over<P>>(&self, time: S, coordinates: &[S; 6], mass: Option<S>) -> [S; 6] {
         let planet = self.0.models.planet;
         let FlightPath { radius: r, longitude, geocentric_latitude, speed: v, flight_path_angle, heading } =
             FlightPath::from(*coordinates);
@@ -51,8 +58,8 @@ impl<P: Scalar> Spherical<P> {
 
         let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
         let velocity = Velocity { speed: v, sin_gamma, cos_gamma, sin_psi, cos_psi };
-        let place = Place { longitude, sin_phi, cos_phi };
-        let [ahead, up, left_over_cos_gamma] = self.aerodynamic::<THESIS, _>(time, altitude, r, cos_phi, &velocity);
+        let place = Place { longitude, sin_phi, cos_phi, altitude, radius: r, mass };
+        let [ahead, up, left_over_cos_gamma] = self.aerodynamic::<THESIS, _>(time, &place, &velocity);
         let [ahead, up, left_over_cos_gamma] = match if THESIS { None } else { self.thrust(time, &place, &velocity) } {
             Some(thrust) => [ahead + thrust[0], up + thrust[1], left_over_cos_gamma + thrust[2]],
             None => [ahead, up, left_over_cos_gamma],
@@ -90,11 +97,17 @@ impl<P: Scalar> Spherical<P> {
     }
 }
 
-/// A place on the planet.
+/// The place of a vehicle, and its mass where that is integrated.
 struct Place<S> {
     longitude: S,
     sin_phi: S,
     cos_phi: S,
+    /// Above the planet's shape, along the radius vector, m.
+    altitude: S,
+    /// m.
+    radius: S,
+    /// kg.
+    mass: Option<S>,
 }
 
 /// A velocity relative to the planet, by its magnitude and its angles.
@@ -123,14 +136,8 @@ impl<S: Scalar> Velocity<S> {
 impl<P: Scalar> Spherical<P> {
     /// Lift and drag over the mass, m/s²: along the velocity, across it upward, and across it to the left over cos γ.
     #[inline(always)]
-    fn aerodynamic<const THESIS: bool, S: Over<P>>(
-        &self,
-        time: S,
-        altitude: S,
-        radius: S,
-        cos_phi: S,
-        velocity: &Velocity<S>,
-    ) -> [S; 3] {
+    fn aerodynamic<const THESIS: bool, S: Over<P>>(&self, time: S, place: &Place<S>, velocity: &Velocity<S>) -> [S; 3] {
+        let Place { altitude, radius, cos_phi, mass, .. } = *place;
         let Velocity { speed, sin_gamma, cos_gamma, sin_psi, cos_psi } = *velocity;
         // Up, east and north are axes like any others.
         let unit = [sin_gamma, cos_gamma * cos_psi, cos_gamma * sin_psi];
@@ -140,7 +147,7 @@ impl<P: Scalar> Spherical<P> {
         match forces.wind::<THESIS, _>(altitude) {
             None => {
                 let still = Directions { speed, ..Directions::of(&position, &Vector3::new(up, east, north)) };
-                let flow = forces.flow_of::<THESIS, _>(altitude, still, speed);
+                let flow = forces.flow_of::<THESIS, _>(altitude, still, speed, mass);
                 let (air, density) = (forces.air::<THESIS, _>(time, &flow), forces.density::<THESIS, _>(&flow));
                 let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
                 let (sin_sigma, cos_sigma) = forces.sin_cos_bank::<THESIS, _>(time, &flow);
@@ -150,7 +157,7 @@ impl<P: Scalar> Spherical<P> {
                 let fade = wind_fade((cos_phi * cos_phi).sqrt());
                 let [to_east, to_north] = wind.map(|part| part * fade);
                 let relative = Vector3::new(up, east - to_east, north - to_north);
-                let flow = forces.flow_of::<THESIS, _>(altitude, Directions::of(&position, &relative), speed);
+                let flow = forces.flow_of::<THESIS, _>(altitude, Directions::of(&position, &relative), speed, mass);
                 let force = forces.aerodynamic::<THESIS, _>(time, &flow);
                 velocity.seen_along(force.into())
             }
@@ -163,7 +170,7 @@ impl<P: Scalar> Spherical<P> {
     #[inline(always)]
     fn thrust<S: Over<P>>(&self, time: S, place: &Place<S>, velocity: &Velocity<S>) -> Option<[S; 3]> {
         let burn = self.0.burn.as_ref()?;
-        let acceleration = burn.mass_ratio(time) * burn.acceleration;
+        let acceleration = self.0.mass_ratio(place.mass).unwrap_or_else(S::one) * burn.acceleration;
         let Velocity { sin_gamma, cos_gamma, .. } = *velocity;
         let faded_over_cos_gamma = || acceleration * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
         Some(match burn.along {
@@ -192,11 +199,11 @@ where
 {
     fn magnitudes(&self) -> [f64; N] {
         let [length, speed] = self.0.units();
-        with_heat_load([length, 1.0, 1.0, speed, 1.0, 1.0], HEAT_LOAD)
+        self.0.magnitudes([length, 1.0, 1.0, speed, 1.0, 1.0])
     }
 
-    fn longest_step(&self, time: f64, coordinates: &[f64; N]) -> f64 {
-        self.0.longest_step(time, &Self::planet_fixed(coordinates))
+    fn longest_step(&self, time: f64, numbers: &[f64; N]) -> f64 {
+        self.0.longest_step(time, &Self::state(numbers))
     }
 }
 
@@ -204,16 +211,16 @@ impl<const N: usize> Formulation<N> for Spherical
 where
     Self: System<f64, N>,
 {
-    fn coordinates<S: Scalar>(state: &PlanetFixed<S>, heat_load: S) -> [S; N] {
-        with_heat_load(FlightPath::from_planet_fixed(state).into(), heat_load)
+    fn numbers<S: Scalar>(state: &State<S>) -> [S; N] {
+        state.numbers(FlightPath::from_planet_fixed(&state.planet_fixed()).into())
     }
 
-    fn planet_fixed<S: Scalar>(coordinates: &[S; N]) -> PlanetFixed<S> {
-        FlightPath::from(without_heat_load(coordinates)).to_planet_fixed()
+    fn state<S: Scalar>(numbers: &[S; N]) -> State<S> {
+        State::of(FlightPath::from(coordinates(numbers)).to_planet_fixed(), numbers)
     }
 
-    fn singularity(&self, coordinates: &[f64; N], within: f64) -> Option<Singularity> {
-        let state = FlightPath::from(without_heat_load(coordinates));
+    fn singularity(&self, numbers: &[f64; N], within: f64) -> Option<Singularity> {
+        let state = FlightPath::from(coordinates(numbers));
         let [_, circular_speed] = self.0.units();
         if state.speed <= within * circular_speed {
             Some(Singularity::Rest)

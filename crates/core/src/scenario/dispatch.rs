@@ -62,12 +62,16 @@ pub(crate) trait ForFormulation {
         AnyStep: From<Step<N>>;
 }
 
-/// Does a computation with the formulation that a case asks for, whose states hold the heat load or not.
-pub(crate) fn dispatch<C: ForFormulation>(equations: Equations, has_heat_load: bool, computation: C) -> C::Output {
-    match (equations, has_heat_load) {
+/// Does a computation with the formulation that a case asks for, whose states hold mass and heat load or do not.
+pub(crate) fn dispatch<C: ForFormulation>(
+    equations: Equations,
+    with_mass_and_heat_load: bool,
+    computation: C,
+) -> C::Output {
+    match (equations, with_mass_and_heat_load) {
         (Equations::Cartesian, false) => computation.with::<Cartesian, 6>(),
         (Equations::Spherical, false) => computation.with::<Spherical, 6>(),
-        (Equations::Cartesian, true) => computation.with::<Cartesian, 7>(),
-        (Equations::Spherical, true) => computation.with::<Spherical, 7>(),
+        (Equations::Cartesian, true) => computation.with::<Cartesian, 8>(),
+        (Equations::Spherical, true) => computation.with::<Spherical, 8>(),
     }
 }

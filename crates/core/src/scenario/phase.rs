@@ -77,19 +77,9 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         }
     }
 
-    /// The mass at a time of the phase, kg.
-    pub(crate) fn mass(&self, time: P) -> P {
-        self.vehicle.mass - self.burnt(time)
-    }
-
-    /// The propellant burnt up to a time of the phase, kg.
-    fn burnt(&self, time: P) -> P {
-        self.thrust.map_or(P::zero(), |thrust| thrust.mass_flow() * (time - self.since))
-    }
-
-    /// The thrust that is on, with the propellant that is left at a time of the phase.
-    fn thrust_left(&self, time: P) -> Option<Thrust<P>> {
-        let left = |whole: P| whole - self.burnt(time);
+    /// The thrust that is on, with the propellant that is left when the vehicle has a mass, kg.
+    fn thrust_left(&self, mass: P) -> Option<Thrust<P>> {
+        let left = |whole: P| whole - (self.vehicle.mass - mass);
         self.thrust.map(|thrust| Thrust { propellant: thrust.propellant.map(left), ..thrust })
     }
 
@@ -111,15 +101,16 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         corners.min_by(|a, b| a.value().total_cmp(&b.value()))
     }
 
-    /// The phase that begins with the effect of an event at a time.
+    /// The phase that begins with the effect of an event at a time, before which the vehicle has a mass, kg.
     #[must_use]
-    pub(crate) fn after(&self, event: usize, numbers: &impl Numbers<P>, time: P) -> Self {
+    pub(crate) fn after(&self, event: usize, numbers: &impl Numbers<P>, time: P, mass: P) -> Self {
         let effect = &numbers.case().events[event].then;
         let number = |of: fn(&Effect) -> Option<f64>| {
             of(effect)?;
             Some(numbers.number(|case| of(&case.events[event].then).unwrap_or_default()))
         };
-        let mass = number(|effect| effect.mass).unwrap_or_else(|| self.mass(time));
+        let thrust_left = self.thrust_left(mass);
+        let mass = number(|effect| effect.mass).unwrap_or(mass);
         let Vehicle { reference_area, aerodynamics, .. } = self.vehicle.with_mass(mass);
         let vehicle = Vehicle {
             reference_area: number(|effect| effect.reference_area).unwrap_or(reference_area),
@@ -133,7 +124,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             ..self.vehicle
         };
         let (thrust, thrust_of) = match effect.engine {
-            None => (self.thrust_left(time), self.thrust_of),
+            None => (thrust_left, self.thrust_of),
             Some(Engine::On(Thrust { force: 0.0, .. }) | Engine::Off) => (None, None),
             Some(Engine::On(Thrust { along, .. })) => {
                 let force = number(|effect| effect.thrust().map(|thrust| thrust.force)).unwrap_or_else(P::zero);
@@ -165,21 +156,21 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         instants.min_by(|a, b| a.value().total_cmp(&b.value()))
     }
 
-    /// The phase that begins with the [next change](Self::next_change) by time alone.
+    /// The phase that begins with the [next change](Self::next_change) by time alone, when the vehicle has a mass, kg.
     #[must_use]
-    pub(crate) fn after_next_change(&self, time: P) -> Self {
+    pub(crate) fn after_next_change(&self, time: P, mass: P) -> Self {
         match (self.burnout(), self.next_inflation()) {
-            (Some(burnout), Some(inflation)) if inflation.value() < burnout.value() => self.inflated(time),
+            (Some(burnout), Some(inflation)) if inflation.value() < burnout.value() => self.inflated(time, mass),
             (Some(_), _) => self.burnt_out(time),
-            (None, _) => self.inflated(time),
+            (None, _) => self.inflated(time, mass),
         }
     }
 
     /// The phase that begins where a canopy begins to fill, or is full.
-    fn inflated(&self, time: P) -> Self {
-        let vehicle = self.vehicle.with_mass(self.mass(time));
+    fn inflated(&self, time: P, mass: P) -> Self {
+        let vehicle = self.vehicle.with_mass(mass);
         let canopies = self.canopies.iter().map(|canopy| canopy.at(time)).collect();
-        Self { since: time, vehicle, thrust: self.thrust_left(time), canopies, ..self.clone() }
+        Self { since: time, vehicle, thrust: self.thrust_left(mass), canopies, ..self.clone() }
     }
 
     /// The phase that begins where the propellant is spent.
@@ -224,9 +215,8 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         let over_mass = self.vehicle.mass.recip();
         let burn = self.thrust.map(|thrust| Burn {
             along: thrust.along,
-            since: self.since,
             acceleration: thrust.force * over_mass,
-            flow: thrust.mass_flow() * over_mass,
+            mass_flow: thrust.mass_flow(),
         });
         let [lift, drag, bank] = numbers.offsets();
         // Those of the coefficients belong to the vehicle of the start.

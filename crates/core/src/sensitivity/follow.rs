@@ -11,11 +11,11 @@ use num_dual::Dual64;
 
 use super::variation::{Dual, Varied};
 use super::varied_forces::{VariedForces, VariedMotion};
-use crate::coordinates::{GreatCircle, PlanetFixed};
+use crate::coordinates::GreatCircle;
 use crate::event::{Condition, Quantity, Trigger};
 use crate::integrate::{AnyStep, Step, System, follow};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, Forces, ModelMode, StateRate, moving};
+use crate::motion::{self, Forces, MASS, ModelMode, State, StateRate, moving};
 use crate::scalar::{Scalar, length};
 use crate::scenario::{Case, ForFormulation, FormulationIn, Numbers, Phase};
 use crate::simulate::SimulationError;
@@ -47,9 +47,7 @@ pub(super) enum Place {
 #[derive(Clone)]
 pub(super) struct Sample<const W: usize> {
     pub(super) time: Dual<W>,
-    pub(super) state: PlanetFixed<Dual<W>>,
-    /// J/m²; 0 where it was not followed.
-    pub(super) heat_load: Dual<W>,
+    pub(super) state: State<Dual<W>>,
     /// The length of the ground track, m; 0 where it was not followed.
     pub(super) ground_distance: Dual<W>,
     pub(super) phase: Phase<Dual<W>>,
@@ -118,11 +116,15 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let forces = VariedForces::new(varied, changes_models, &phase, &flight.flown.phases[0], mode);
         let mut follower = Self {
             of,
-            phase,
             number: 0,
             motion: forces.motion(),
             forces,
-            state: F::coordinates(&start, Dual::from(0.0)),
+            state: F::numbers(&State {
+                mass: Some(phase.vehicle.mass),
+                heat_load: Some(Dual::from(0.0)),
+                ..State::from(start)
+            }),
+            phase,
             ground_distance: Dual::from(0.0),
             track: GreatCircle::of(&start),
             delays: vec![Dual::from(0.0); flight.case.events.len()],
@@ -139,8 +141,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         for (index, _) in wanted {
             self.samples[index] = Some(Sample {
                 time,
-                state: F::planet_fixed(&self.state),
-                heat_load: self.state.get(6).copied().unwrap_or_else(num_traits::Zero::zero),
+                state: F::state(&self.state),
                 ground_distance: self.ground_distance,
                 phase: self.phase.clone(),
                 mode: self.forces.mode(),
@@ -176,7 +177,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
 
     /// The rate of the ground distance, m/s.
     fn ground_speed(&self, state: &[Dual<W>; N]) -> Dual<W> {
-        let PlanetFixed { position, velocity } = F::planet_fixed(state);
+        let State { position, velocity, .. } = F::state(state);
         let over_radius = length(&position).recip();
         let radius = |forces: &Forces| forces.planet().equatorial_radius();
         let radius = self.forces.with_models(Dual::from(radius(&self.forces.plain)), radius);
@@ -228,7 +229,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             self.keep(Place::Before(place), instant);
             self.apply_impulse(record, delay);
             if !self.of.flight.case.events[record.event].then.is_none() {
-                self.phase = self.phase.after(record.event, &self.of.varied, instant);
+                self.set_phase(self.phase.after(record.event, &self.of.varied, instant, self.mass()));
                 self.number = record.after.phase;
             }
             self.happened += 1;
@@ -252,8 +253,20 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         while self.number < number {
             self.number += 1;
             let since = self.of.flight.flown.phases[self.number].since;
-            self.phase = self.phase.after_next_change(delay + since);
+            self.set_phase(self.phase.after_next_change(delay + since, self.mass()));
         }
+    }
+
+    /// The present mass, kg.
+    fn mass(&self) -> Dual<W> {
+        self.state.get(MASS).copied().unwrap_or(self.phase.vehicle.mass)
+    }
+
+    fn set_phase(&mut self, phase: Phase<Dual<W>>) {
+        if let Some(mass) = self.state.get_mut(MASS) {
+            *mass = phase.vehicle.mass;
+        }
+        self.phase = phase;
     }
 
     /// Changes the velocity by the impulse of an event, if it has one.
@@ -261,12 +274,12 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let Follow { flight, varied, .. } = self.of;
         let Some(impulse) = flight.case.events[record.event].then.impulse else { return };
         let time = record.before.time;
-        let state = F::planet_fixed(&self.state);
+        let state = F::state(&self.state);
         let of_event = |case: &Case| case.events[record.event].then.impulse;
         let speed_change = varied.number(|case| of_event(case).map_or(0.0, |impulse| impulse.speed_change));
-        let direction = motion::along(impulse.along, &flight.case.planet, delay + time, &state);
+        let direction = motion::along(impulse.along, &flight.case.planet, delay + time, &state.planet_fixed());
         // The axis itself may vary, and the rotation that turns it.
-        let plain = PlanetFixed { position: state.position.map(|x| x.re), velocity: state.velocity.map(|x| x.re) };
+        let plain = state.map(|number| number.re).planet_fixed();
         let component = |index: usize| {
             varied.number(|case| {
                 let along = of_event(case).map_or(impulse.along, |impulse| impulse.along);
@@ -278,8 +291,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             component - component.re
         });
         let velocity = state.velocity + (direction + turned) * speed_change;
-        let heat_load = self.state.get(6).copied().unwrap_or_else(num_traits::Zero::zero);
-        self.state = F::coordinates(&PlanetFixed { velocity, ..state }, heat_load);
+        self.state = F::numbers(&State { velocity, ..state });
     }
 
     /// The end of the flight, with what happens there.
@@ -353,11 +365,11 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             return change - change.re;
         }
         let plain = &self.forces.plain;
-        let values = F::planet_fixed(&self.state.map(|number| number.re));
+        let values = F::state(&self.state.map(|number| number.re));
         let Some(switch) = plain.first_to_turn(next, time, &values) else { return Dual::from(0.0) };
         let moving = self.moving(time, rates);
         let rate = plain.readings(Dual64::new(time, 1.0), &moving.state)[switch as usize].eps;
-        let reading = self.forces.dual.readings(Dual::from(time), &F::planet_fixed(&self.state))[switch as usize];
+        let reading = self.forces.dual.readings(Dual::from(time), &F::state(&self.state))[switch as usize];
         let reading = self.forces.with_models(reading, |forces| forces.readings(time, &values)[switch as usize]);
         delay(reading - self.forces.boundary(switch, next), rate)
     }

@@ -2,9 +2,8 @@
 
 use super::follow::{Follow, Place, Sample};
 use super::variation::{CENTRAL, Dual, Node, Variation, Varied};
-use crate::coordinates::PlanetFixed;
 use crate::interrupt::Interrupt;
-use crate::motion::Forces;
+use crate::motion::{Forces, State};
 use crate::scenario::dispatch;
 use crate::simulate::SimulationError;
 use crate::trajectory::{FlightPoint, Origin, Trajectory};
@@ -117,7 +116,7 @@ fn chunk<const W: usize>(
         with_ground_distance: true,
         interrupt,
     };
-    let samples = dispatch(case.solver.equations, case.heating.is_some(), follow)?;
+    let samples = dispatch(case.solver.equations, case.has_mass_and_heat_load(), follow)?;
     let varied = Varied::<W> { case, variations };
     for (((sample, place), output), row) in samples.iter().zip(places).zip(outputs).zip(slopes) {
         let Some(sample) = sample.as_ref().filter(|_| place.is_some()) else {
@@ -152,12 +151,11 @@ const MOVED: f64 = 1e-5;
 
 impl<'a, const W: usize> Near<'a, W> {
     fn new(flight: &'a Trajectory, varied: &'a Varied<'a, W>, first: usize, sample: &'a Sample<W>) -> Self {
-        let Sample { time, state, heat_load, phase, mode, .. } = sample;
+        let Sample { time, state, phase, mode, .. } = sample;
         let phase = phase.map(|number| number.re);
         let mut forces = phase.forces(&flight.case);
         forces.enter(*mode);
-        let heat_load = flight.case.heating.map(|_| heat_load.re);
-        let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &plain(state, |x| x.re), heat_load);
+        let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &state.map(|number| number.re));
         Self { flight, varied, first, sample, point, forces }
     }
 
@@ -189,34 +187,30 @@ impl<'a, const W: usize> Near<'a, W> {
 
     /// The point where the number of a variation has moved the state, and that from which the flight sets out, by an offset.
     fn with_state_moved(&self, variation: usize, offset: f64) -> FlightPoint {
-        let Sample { time, state, heat_load, ground_distance, phase, .. } = self.sample;
+        let Sample { time, state, ground_distance, phase, .. } = self.sample;
         let moved = |number: Dual<W>| number.re + offset * slope(&number, variation);
-        let origin = Origin::of(&plain(&self.varied.start(), moved));
-        let heat_load = self.flight.case.heating.map(|_| moved(*heat_load));
+        let origin = Origin::of(&State::from(self.varied.start()).map(moved).planet_fixed());
         let phase = phase.map(|number| number.re);
-        let state = plain(state, moved);
-        let point = self.flight.point_from(&origin, &self.forces, &phase, moved(*time), &state, heat_load);
+        let point = self.flight.point_from(&origin, &self.forces, &phase, moved(*time), &state.map(moved));
         let ground_distance = self.point.ground_distance + offset * slope(ground_distance, variation);
         FlightPoint { ground_distance, ..point }
     }
 
     /// The point where the number of a variation is moved in the vehicle and in the models.
     fn with_numbers_moved(&self, variation: usize, node: &Node) -> FlightPoint {
-        let Sample { time, state, heat_load, phase, mode, .. } = self.sample;
+        let Sample { time, state, phase, mode, .. } = self.sample;
         let phase = phase.map(|number| number.re + node.offset * slope(&number, variation));
         let mut forces = phase.with_models_of(&node.case).forces(&node.case);
         forces.enter(*mode);
-        let heat_load = self.flight.case.heating.map(|_| heat_load.re);
-        let state = plain(state, |number| number.re);
-        self.flight.point_from(&self.flight.origin, &forces, &phase, time.re, &state, heat_load)
+        self.flight.point_from(&self.flight.origin, &forces, &phase, time.re, &state.map(|number| number.re))
     }
 
     /// The offset of a variation that moves the state by a small part of its size; none where it does not move it.
     fn step(&self, variation: usize) -> Option<f64> {
-        let Sample { time, state, heat_load, ground_distance, .. } = self.sample;
-        let PlanetFixed { position, velocity } = plain(state, |number| number.re);
-        let rates = plain(state, |number| slope(&number, variation));
-        let start = plain(&self.varied.start(), |number| slope(&number, variation));
+        let Sample { time, state, ground_distance, phase, .. } = self.sample;
+        let State { position, velocity, heat_load, .. } = state.map(|number| number.re);
+        let rates = state.map(|number| slope(&number, variation));
+        let start = State::from(self.varied.start()).map(|number| slope(&number, variation));
         let radius = position.norm();
         // The least speed that counts, where the vehicle is nearly at rest.
         let least = 1e-3 * (self.flight.case.planet.gravitational_parameter / radius).sqrt();
@@ -226,7 +220,8 @@ impl<'a, const W: usize> Near<'a, W> {
             rates.position.norm() / radius,
             rates.velocity.norm() / speed,
             slope(time, variation).abs() * speed / radius,
-            slope(heat_load, variation).abs() / heat_load.re.abs().max(1.0),
+            rates.heat_load.unwrap_or(0.0).abs() / heat_load.unwrap_or(0.0).abs().max(1.0),
+            rates.mass.unwrap_or(0.0).abs() / phase.vehicle.mass.re,
             slope(ground_distance, variation).abs() / radius,
             start.position.norm() / radius,
             start.velocity.norm() / start_speed,
@@ -239,11 +234,6 @@ impl<'a, const W: usize> Near<'a, W> {
 /// A derivative of a number.
 fn slope<const W: usize>(number: &Dual<W>, variation: usize) -> f64 {
     number.eps.0.map_or(0.0, |slopes| slopes[variation])
-}
-
-/// A state without derivatives.
-fn plain<const W: usize>(state: &PlanetFixed<Dual<W>>, number: impl Fn(Dual<W>) -> f64) -> PlanetFixed<f64> {
-    PlanetFixed { position: state.position.map(&number), velocity: state.velocity.map(&number) }
 }
 
 /// Where an output is taken from the flight; none where the flight has no such moment.

@@ -10,11 +10,10 @@ use super::detector::{Detector, cut_at_first};
 use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boundary_in_time};
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
-use crate::coordinates::PlanetFixed;
 use crate::event::{Effect, Engine};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, Chatter, Formulation, Singularity, StateRate, heat_load};
+use crate::motion::{self, Chatter, Formulation, MASS, Singularity, State, StateRate};
 use crate::propulsion::{Impulse, ThrustAxis};
 use crate::scenario::{Phase, Scenario};
 use crate::trajectory::{Arrival, EventRecord, Instant, Termination, Warning};
@@ -53,7 +52,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let case = scenario.case();
         let limits =
             Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
-        let state = F::coordinates(&case.initial_state, 0.0);
+        let start = State::from(case.initial_state);
+        let state = F::numbers(&State { mass: Some(case.vehicle.mass), heat_load: Some(0.0), ..start });
         regular(&motion, 0.0, &state)?;
         enter_mode_of(&mut motion, 0.0, &state)?;
         let integrator = Integrator::new(&motion, state, limits);
@@ -223,8 +223,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Goes the rest of the way to rest, so that a condition on the speed 0 is met.
     fn halt(&mut self) {
-        let still = PlanetFixed { velocity: Vector3::zeros(), ..F::planet_fixed(&self.state) };
-        self.state = F::coordinates(&still, heat_load(&self.state).unwrap_or(0.0));
+        self.state = F::numbers(&State { velocity: Vector3::zeros(), ..F::state(&self.state) });
     }
 
     /// The thrust that is on has no direction.
@@ -232,14 +231,14 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let switches_on =
             |event: &usize| matches!(self.scenario.case().events[*event].then.engine, Some(Engine::On(_)));
         let event = self.log.event_records.iter().rev().map(|record| record.event).find(switches_on).unwrap_or(0);
-        let altitude = self.scenario.case().planet.shape.altitude(&F::planet_fixed(&self.state).position);
+        let altitude = self.scenario.case().planet.shape.altitude(&F::state(&self.state).position);
         SimulationError::NoDirection { event, time, altitude }
     }
 
     /// Ends the thrust if its propellant is spent, and lets canopies begin to fill, or be full.
     fn change_by_time(&mut self) -> Result<(), SimulationError> {
         while self.phase.next_change().is_some_and(|change| self.time >= change) {
-            let next = self.phase.after_next_change(self.time);
+            let next = self.phase.after_next_change(self.time, self.mass());
             if self.phase.thrust.is_some() && next.thrust.is_none() {
                 self.log.warnings.push(Warning::PropellantSpent { time: self.time });
             }
@@ -266,7 +265,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// The time over which the motion is followed ahead, s, where the rates at an instant do not decide whether a quantity rises or falls.
     fn foresight(&self) -> f64 {
         let planet = &self.scenario.case().planet;
-        let radius = F::planet_fixed(&self.state).position.norm();
+        let radius = F::state(&self.state).position.norm();
         let dynamical = (radius.powi(3) / planet.gravitational_parameter).sqrt();
         (FORESIGHT * dynamical).min(self.motion.longest_step(self.time, &self.state))
     }
@@ -280,7 +279,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         }
         self.warn_of(event, effect);
         if !effect.is_none() {
-            self.enter(self.phase.after(event, self.scenario.case(), self.time))?;
+            self.enter(self.phase.after(event, self.scenario.case(), self.time, self.mass()))?;
         }
         self.log.event_records.push(EventRecord { event, before, after: self.instant() });
         Ok(())
@@ -302,17 +301,16 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// A direction at the present instant, if there is one.
     fn direction(&self, along: ThrustAxis) -> Option<Vector3<f64>> {
-        motion::direction(along, &self.scenario.case().planet, self.time, &F::planet_fixed(&self.state))
+        motion::direction(along, &self.scenario.case().planet, self.time, &F::state(&self.state).planet_fixed())
     }
 
     /// Changes the velocity at once.
     fn apply_impulse(&mut self, event: usize, impulse: Impulse) {
-        let PlanetFixed { position, velocity } = F::planet_fixed(&self.state);
         match self.direction(impulse.along) {
             Some(direction) => {
-                let velocity = velocity + direction * impulse.speed_change;
-                let heat_load = heat_load(&self.state).unwrap_or(0.0);
-                self.state = F::coordinates(&PlanetFixed { position, velocity }, heat_load);
+                let state = F::state(&self.state);
+                let velocity = state.velocity + direction * impulse.speed_change;
+                self.state = F::numbers(&State { velocity, ..state });
                 let derivative = self.motion.derivative(self.time, &self.state);
                 self.stop_altitude.go_to(&StateRate::of::<F, N>(self.time, &self.state, &derivative));
             }
@@ -320,8 +318,16 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         }
     }
 
+    /// The present mass, kg.
+    fn mass(&self) -> f64 {
+        self.state.get(MASS).copied().unwrap_or(self.phase.vehicle.mass)
+    }
+
     /// Enters a phase, in the mode of the present state.
     fn enter(&mut self, phase: Phase) -> Result<(), SimulationError> {
+        if let Some(mass) = self.state.get_mut(MASS) {
+            *mass = phase.vehicle.mass;
+        }
         *self.motion.forces_mut() = phase.forces(self.scenario.case());
         self.phase = phase.clone();
         self.log.phases.push(phase);
@@ -333,8 +339,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     pub(super) fn instant(&self) -> Instant {
         Instant {
             time: self.time,
-            state: F::planet_fixed(&self.state),
-            heat_load: heat_load(&self.state),
+            state: F::state(&self.state),
             phase: self.log.phases.len(),
             mode: self.motion.forces().mode(),
         }
@@ -347,12 +352,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             IntegrationError::StepTooSmall { time } => (time, SimulationError::TooStiff { time }),
             IntegrationError::Interrupted { time } => return SimulationError::Interrupted { time },
         };
-        if self.phase.mass(time) < NEARLY_NOTHING * self.phase.vehicle.mass {
+        if self.mass() < NEARLY_NOTHING * self.phase.vehicle.mass {
             return SimulationError::NothingLeft { time };
         }
         let forces = self.motion.forces();
         let [_, circular_speed] = forces.units();
-        let speed = F::planet_fixed(&self.state).velocity.norm();
+        let speed = F::state(&self.state).velocity.norm();
         match self.motion.singularity(&self.state, NEARLY_SINGULAR) {
             _ if forces.thrusts_by_velocity() && speed <= NEARLY_AT_REST * circular_speed => self.no_direction(time),
             Some(at) => SimulationError::Singularity { time, at },
@@ -363,8 +368,9 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     fn arrival(&self, termination: Termination) -> Arrival {
         let mut statistics = self.integrator.statistics();
         statistics.evaluations += self.evaluations;
-        let heat_load = heat_load(&self.state);
-        Arrival { termination, time: self.time, state: F::planet_fixed(&self.state), heat_load, statistics }
+        let state = F::state(&self.state);
+        let heat_load = state.heat_load.filter(|_| self.scenario.case().heating.is_some());
+        Arrival { termination, time: self.time, state: state.planet_fixed(), heat_load, statistics }
     }
 }
 
@@ -387,16 +393,16 @@ fn enter_mode_of<F: Formulation<N>, const N: usize>(
     time: f64,
     state: &[f64; N],
 ) -> Result<(), SimulationError> {
-    let state = F::planet_fixed(state);
+    let state = F::state(state);
     motion.forces_mut().enter_mode_of(time, &state).map_err(|Chatter(switch)| SimulationError::Chatter { time, switch })
 }
 
 /// Whether a braking thrust has brought the vehicle to rest, as near as the steps or the equations come to it.
 fn halts<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64; N]) -> bool {
     let forces = motion.forces();
-    let fixed = F::planet_fixed(state);
-    let at_rest = || forces.is_at_rest(&fixed) || motion.singularity(state, SINGULAR) == Some(Singularity::Rest);
-    forces.thrusts_by_velocity() && at_rest() && forces.brakes_to_rest(time, &fixed)
+    let named = F::state(state);
+    let at_rest = || forces.is_at_rest(&named) || motion.singularity(state, SINGULAR) == Some(Singularity::Rest);
+    forces.thrusts_by_velocity() && at_rest() && forces.brakes_to_rest(time, &named)
 }
 
 /// Refuses a state in which the equations break down.

@@ -4,10 +4,9 @@ use num_dual::Dual64;
 
 use super::SimulationError;
 use super::step_view::StepView;
-use crate::coordinates::PlanetFixed;
 use crate::heating::HeatFlux;
 use crate::integrate::{Integrator, event};
-use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, ModelMode, StateRate, heat_load};
+use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, ModelMode, StateRate};
 use crate::trajectory::{HeatingPeaks, Instant, Peak, Peaks, Warning};
 
 /// What was seen so far, and the loads with their rates at the end of the last step.
@@ -61,7 +60,7 @@ impl PeakTracker {
             if before.0 == phase_and_mode.0 {
                 self.jump(forces, &view.start())?;
             } else {
-                self.end_phase(before.0, forces, view.step.start_time, heat_load(&view.step.start));
+                self.end_phase(before.0, forces, view.step.start_time, F::state(&view.step.start).heat_load);
                 self.begin_phase(forces, &view.start())?;
             }
             self.warn_outside_tables(forces, view.step.start_time);
@@ -109,15 +108,12 @@ impl PeakTracker {
 
     /// Ends with the flight, whose last instant may have brought a jump.
     pub(super) fn end(&mut self, forces: &Forces, last: &Instant) -> Result<(), SimulationError> {
-        let Instant { time, state, heat_load, phase, .. } = last;
+        let Instant { time, state, phase, .. } = last;
         if *phase != self.phase_and_mode.0 {
-            self.end_phase(self.phase_and_mode.0, forces, *time, *heat_load);
-            let state =
-                PlanetFixed { position: state.position.map(Dual64::from), velocity: state.velocity.map(Dual64::from) };
-            let heat = Dual64::from(heat_load.unwrap_or(0.0));
-            self.begin_phase(forces, &StateRate { time: Dual64::from(*time), state, heat_load: heat })?;
+            self.end_phase(self.phase_and_mode.0, forces, *time, state.heat_load);
+            self.begin_phase(forces, &StateRate { time: Dual64::from(*time), state: state.map(Dual64::from) })?;
         }
-        self.end_phase(*phase, forces, *time, *heat_load);
+        self.end_phase(*phase, forces, *time, state.heat_load);
         Ok(())
     }
 

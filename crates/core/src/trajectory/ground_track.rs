@@ -63,8 +63,8 @@ impl GroundTrack {
         circle: &GreatCircle,
     ) -> PlanetFixed<f64> {
         let interpolant = motion.interpolant(&step.step);
-        let state = |time| interpolant.at(motion, time).0;
-        let (times, last) = ([step.start_time(), step.end_time()], motion.end(&step.step));
+        let state = |time| interpolant.at(motion, time).planet_fixed();
+        let (times, last) = ([step.start_time(), step.end_time()], motion.end(&step.step).planet_fixed());
         if times[0] < times[1] {
             self.add(&state, times, [first, &last], circle, MOST_HALVINGS);
         }

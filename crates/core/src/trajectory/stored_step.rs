@@ -1,8 +1,7 @@
 //! A step of a flight, kept, and the motion inside it.
 
-use crate::coordinates::PlanetFixed;
 use crate::integrate::{AnyStep, Interpolant};
-use crate::motion::{Cartesian, Forces, Formulation, ModelMode, Spherical, heat_load};
+use crate::motion::{Cartesian, Forces, Formulation, ModelMode, Spherical, State};
 
 /// A step of a flight, and the phase and the mode of its models during it.
 #[derive(Clone, Debug)]
@@ -20,8 +19,8 @@ pub(crate) enum Motion {
 
 /// The motion inside a step.
 pub(crate) enum AnyInterpolant {
-    Unheated(Interpolant<6>),
-    Heated(Interpolant<7>),
+    Six(Interpolant<6>),
+    Eight(Interpolant<8>),
 }
 
 impl StoredStep {
@@ -42,11 +41,11 @@ impl StoredStep {
 }
 
 impl AnyInterpolant {
-    /// The state and the heat load, J/m², at an instant.
-    pub(crate) fn at(&self, motion: &Motion, time: f64) -> (PlanetFixed<f64>, Option<f64>) {
+    /// The state at an instant.
+    pub(crate) fn at(&self, motion: &Motion, time: f64) -> State<f64> {
         match self {
-            Self::Unheated(interpolant) => motion.state(&interpolant.state_at(time)),
-            Self::Heated(interpolant) => motion.state(&interpolant.state_at(time)),
+            Self::Six(interpolant) => motion.state(&interpolant.state_at(time)),
+            Self::Eight(interpolant) => motion.state(&interpolant.state_at(time)),
         }
     }
 }
@@ -66,31 +65,30 @@ impl Motion {
 
     pub(crate) fn interpolant(&self, step: &AnyStep) -> AnyInterpolant {
         match (self, step) {
-            (Self::Cartesian(motion), AnyStep::Unheated(step)) => AnyInterpolant::Unheated(step.interpolant(motion)),
-            (Self::Cartesian(motion), AnyStep::Heated(step)) => AnyInterpolant::Heated(step.interpolant(motion)),
-            (Self::Spherical(motion), AnyStep::Unheated(step)) => AnyInterpolant::Unheated(step.interpolant(motion)),
-            (Self::Spherical(motion), AnyStep::Heated(step)) => AnyInterpolant::Heated(step.interpolant(motion)),
+            (Self::Cartesian(motion), AnyStep::Six(step)) => AnyInterpolant::Six(step.interpolant(motion)),
+            (Self::Cartesian(motion), AnyStep::Eight(step)) => AnyInterpolant::Eight(step.interpolant(motion)),
+            (Self::Spherical(motion), AnyStep::Six(step)) => AnyInterpolant::Six(step.interpolant(motion)),
+            (Self::Spherical(motion), AnyStep::Eight(step)) => AnyInterpolant::Eight(step.interpolant(motion)),
         }
     }
 
     /// The state at the end of a step.
-    pub(crate) fn end(&self, step: &AnyStep) -> PlanetFixed<f64> {
+    pub(crate) fn end(&self, step: &AnyStep) -> State<f64> {
         match step {
-            AnyStep::Unheated(step) => self.state(&step.end).0,
-            AnyStep::Heated(step) => self.state(&step.end).0,
+            AnyStep::Six(step) => self.state(&step.end),
+            AnyStep::Eight(step) => self.state(&step.end),
         }
     }
 
-    /// The state and the heat load, J/m², of numbers of the formulation.
-    fn state<const N: usize>(&self, coordinates: &[f64; N]) -> (PlanetFixed<f64>, Option<f64>)
+    /// The state of numbers of the formulation.
+    fn state<const N: usize>(&self, numbers: &[f64; N]) -> State<f64>
     where
         Cartesian: Formulation<N>,
         Spherical: Formulation<N>,
     {
-        let state = match self {
-            Self::Cartesian(_) => Cartesian::planet_fixed(coordinates),
-            Self::Spherical(_) => Spherical::planet_fixed(coordinates),
-        };
-        (state, heat_load(coordinates))
+        match self {
+            Self::Cartesian(_) => Cartesian::state(numbers),
+            Self::Spherical(_) => Spherical::state(numbers),
+        }
     }
 }
