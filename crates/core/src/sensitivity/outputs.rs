@@ -4,6 +4,7 @@ use super::follow::{Follow, Place, Sample};
 use super::variation::{CENTRAL, Dual, Node, Variation, Varied};
 use crate::interrupt::Interrupt;
 use crate::motion::{Forces, State};
+use crate::root::bracketed;
 use crate::scenario::dispatch;
 use crate::simulate::SimulationError;
 use crate::trajectory::{FlightPoint, Origin, Trajectory};
@@ -258,10 +259,9 @@ fn place(flight: &Trajectory, output: &Output, interrupt: &dyn Interrupt) -> Res
 
 /// Points of a step at which a quantity is looked at, its ends included: between two of them it is taken to turn no more than once.
 const LOOKS: usize = 9;
-/// The golden section's part.
-const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// Sections by which the place of a peak is narrowed: to a millionth of the part between two looks, where a peak is flat to rounding.
-const SECTIONS: usize = 30;
+/// The part of a step over which a quantity is differenced to find where it turns: the differences of fourth order leave no more than the
+/// noise of the motion inside a step, which a comparison of values would meet far from the peak, where it is flat.
+const NEIGHBOUR: f64 = 1.0 / 512.0;
 
 /// Where a quantity is greatest; none where it is nowhere a number.
 fn extremum(
@@ -289,8 +289,8 @@ fn extremum(
         for look in 1..LOOKS - 1 {
             let [before, here, after] = [looks[look - 1], looks[look], looks[look + 1]];
             if here.is_some() && here >= before && here >= after {
-                let (part, value) = golden_section(&at, [part(look - 1), part(look + 1)]);
-                offer(value, Place::Inside { step: index, time: step.time(part) });
+                let part = turn(&at, [part(look - 1), part(look + 1)]).unwrap_or(part(look));
+                offer(at(part), Place::Inside { step: index, time: step.time(part) });
             }
         }
         offer(looks[LOOKS - 1], Place::StepEnd(index));
@@ -301,23 +301,14 @@ fn extremum(
     Ok(greatest.map(|(_, place)| place))
 }
 
-/// The greatest value of a function that turns once in a range, and where it is.
-fn golden_section(at: &impl Fn(f64) -> Option<f64>, [mut low, mut high]: [f64; 2]) -> (f64, Option<f64>) {
-    let place = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-    let [mut left, mut right] = place(low, high);
-    let [mut at_left, mut at_right] = [at(left), at(right)];
-    for _ in 0..SECTIONS {
-        if at_left > at_right {
-            high = right;
-            (right, at_right) = (left, at_left);
-            left = place(low, high)[0];
-            at_left = at(left);
-        } else {
-            low = left;
-            (left, at_left) = (right, at_right);
-            right = place(low, high)[1];
-            at_right = at(right);
-        }
-    }
-    if at_left > at_right { (left, at_left) } else { (right, at_right) }
+/// Where in a range of a step a quantity turns from growing to falling, if it does so smoothly.
+fn turn(at: &impl Fn(f64) -> Option<f64>, [low, high]: [f64; 2]) -> Option<f64> {
+    let value = |part: f64| at(part).unwrap_or(f64::NAN);
+    let slope = |part: f64| {
+        let difference = |times: f64| value(part + times * NEIGHBOUR) - value(part - times * NEIGHBOUR);
+        8.0 * difference(1.0) - difference(2.0)
+    };
+    let ends = [low.max(2.0 * NEIGHBOUR), high.min(1.0 - 2.0 * NEIGHBOUR)];
+    let [first, last] = ends.map(|part| (part, slope(part)));
+    (first.1 > 0.0 && last.1 < 0.0).then(|| bracketed(slope, first, last, f64::EPSILON))
 }
