@@ -18,6 +18,7 @@ use crate::metrics::Work;
 use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
 use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
+use crate::wire::events::Event;
 use crate::wire::scenario::{Job, Wanted};
 use crate::wire::sensitivities::Sensitivities;
 use crate::wire::track::Track;
@@ -88,7 +89,7 @@ fn extras(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<E
     if request.verify {
         match verify(&job.scenario, flight, interrupt) {
             Ok(core) => {
-                let has_thrust = request.events.iter().any(|event| event.then.thrust.is_some());
+                let has_thrust = request.events.iter().any(Event::changes_thrust);
                 extras.verification = Some(Verification::from_core(core, has_thrust));
             }
             Err(error @ SimulationError::Interrupted { .. }) => return Err(error),

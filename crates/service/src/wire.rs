@@ -32,23 +32,23 @@ pub mod warning;
 
 use std::fmt;
 
-use description::schemas;
+use description::{Words, schemas, word};
 use schema::Components;
 
 use reentry::number_text::NumberText;
 use serde::Serialize;
-use utoipa::ToSchema;
 
 /// The schemas of requests and of all that is in them, by their names.
 pub fn request_schemas() -> Components {
     let mut components = Components::new();
-    schemas(&mut components, vehicle::vehicle);
-    schemas(&mut components, control::control);
+    schemas(&mut components, scenario::simulate_request);
+    schemas(&mut components, analytic::analytic_request);
+    schemas(&mut components, convert::convert_request);
     components
 }
 
 /// The unit of every angle of a request and of its answer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AngleUnit {
     /// Radians.
@@ -58,9 +58,17 @@ pub enum AngleUnit {
     Deg,
 }
 
-impl AngleUnit {
-    const NAMES: [(&'static str, Self); 2] = [("rad", Self::Rad), ("deg", Self::Deg)];
+/// The words for units of angles.
+const ANGLE_UNITS: Words<AngleUnit> = Words {
+    name: "AngleUnit",
+    doc: "The unit of every angle of a request and of its answer.",
+    words: &[
+        word("rad", AngleUnit::Rad, "radians").doc("Radians."),
+        word("deg", AngleUnit::Deg, "degrees").doc("Degrees."),
+    ],
+};
 
+impl AngleUnit {
     /// An angle of the request, in radians.
     pub fn to_radians(self, angle: f64) -> f64 {
         match self {

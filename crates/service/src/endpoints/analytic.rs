@@ -11,7 +11,8 @@ use crate::extract::Payload;
 use crate::format::Format;
 use crate::reply::reply;
 use crate::state::AppState;
-use crate::wire::analytic::{AnalyticRequest, AnalyticResponse};
+use crate::wire::analytic::AnalyticResponse;
+use crate::wire::schema::names::AnalyticRequest;
 
 /// Sets a closed-form theory of entry beside the simulated flight.
 ///

@@ -20,7 +20,7 @@ use crate::reply::{self, Lines};
 use crate::state::AppState;
 use crate::wire::batch::{self, MOST_CASES};
 use crate::wire::json;
-use crate::wire::scenario::SimulateRequest;
+use crate::wire::schema::names::SimulateRequest;
 
 /// Flies a list of cases.
 ///

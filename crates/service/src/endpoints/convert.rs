@@ -11,7 +11,8 @@ use crate::extract::Payload;
 use crate::format::Format;
 use crate::reply::reply;
 use crate::state::AppState;
-use crate::wire::convert::{ConvertRequest, ConvertResponse};
+use crate::wire::convert::ConvertResponse;
+use crate::wire::schema::names::ConvertRequest;
 
 /// Writes a state in every coordinate system.
 ///

@@ -11,7 +11,7 @@ use crate::extract::Payload;
 use crate::format::Format;
 use crate::reply::reply;
 use crate::state::AppState;
-use crate::wire::scenario::SimulateRequest;
+use crate::wire::schema::names::SimulateRequest;
 use crate::wire::trajectory::SimulateResponse;
 
 /// Flies a case.

@@ -2,91 +2,81 @@
 
 use std::io::Write;
 
-use reentry::analytic::{self, Comparison, Fault as TheoryFault, Prediction, Theory};
+use reentry::analytic::{Comparison, Fault as TheoryFault, Prediction, Solution, Theory};
 use reentry::trajectory::{FlightPoint, Trajectory};
 use reentry::vehicle::Aerodynamics;
 use serde::Serialize;
-use serde_json::Value;
-use utoipa::openapi::schema::{ObjectBuilder, RefBuilder};
-use utoipa::openapi::{RefOr, Schema};
-use utoipa::{PartialSchema, ToSchema};
+use serde_json::{Value, json};
+use utoipa::ToSchema;
 
 use super::control::is_given;
-use super::reader::{self, Fault};
-use super::scenario::{Job, SimulateRequest, Wanted};
+use super::description::{self, Object, Words, word};
+use super::reader::Fault;
+use super::scenario::{Job, SimulateRequest, Wanted, case};
+use super::schema::names;
 use super::sensitivities::Sensitivities;
-use super::state::State;
+use super::state::Coordinates;
 use super::trajectory::Extras;
 use super::verification::Verification;
 use super::warning::Warning;
-use super::wind::Wind;
 use super::{Angle, AngleUnit};
 
-/// The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Solution {
-    /// Equations 77 to 79: V² = g₀r₀/(βr₀ηk + 1), γ = -2g₀/(kβV²); up to |γ| = 5°. Needs lift.
-    ShallowGlide,
-    /// Equation 80: γ of a descent to second order, with the simulated speed. Needs lift.
-    Loh,
-    /// Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Needs lift and a descent.
-    SteepGlide,
-    /// Equations 84 to 87: γ = `γ_e`, and V of a straight line. Needs a descent, without lift.
-    SteepBallistic,
-    /// Equations 88 to 90: Wang and Ting's, from more than circular speed. Needs lift and a descent.
-    MediumGlide,
+/// The words for theories.
+pub const SOLUTIONS: Words<Solution> = Words {
+    name: "Solution",
+    doc: "The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.",
+    words: &[
+        word("shallow_glide", Solution::ShallowGlide, "Shallow glide")
+            .doc("Equations 77 to 79: V² = g₀r₀/(βr₀ηk + 1), γ = -2g₀/(kβV²); up to |γ| = 5°. Needs lift."),
+        word("loh", Solution::Loh, "Loh")
+            .doc("Equation 80: γ of a descent to second order, with the simulated speed. Needs lift."),
+        word("steep_glide", Solution::SteepGlide, "Steep glide")
+            .doc("Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Needs lift and a descent."),
+        word("steep_ballistic", Solution::SteepBallistic, "Steep ballistic")
+            .doc("Equations 84 to 87: γ = `γ_e`, and V of a straight line. Needs a descent, without lift."),
+        word("medium_glide", Solution::MediumGlide, "Medium glide")
+            .doc("Equations 88 to 90: Wang and Ting's, from more than circular speed. Needs lift and a descent."),
+    ],
+};
+
+/// A case to simulate, and the theory to set beside it.
+pub fn analytic_request(object: &mut Object) -> Option<(Solution, SimulateRequest)> {
+    object.named(
+        "AnalyticRequest",
+        "A case to simulate, as for `/simulate`, and the theory to set beside it. `output` cannot be `{\"trajectory\": false}`: the predictions are \
+         made at the rows.",
+    );
+    let case = case(object);
+    let solution =
+        object.field("solution", "Theory").doc("The theory to set beside the simulated flight.").word(&SOLUTIONS);
+    // Theories know neither heating nor events, but an empty list is none.
+    object.conceal("heating");
+    object.refine("events", || json!({"maxItems": 0}));
+    object.condition(|| json!({"dependentSchemas": {"solution": conditions_of_theories()}}));
+    Some((solution?, case?))
 }
 
-impl Solution {
-    const NAMES: [(&'static str, Self); 5] = [
-        ("shallow_glide", Self::ShallowGlide),
-        ("loh", Self::Loh),
-        ("steep_glide", Self::SteepGlide),
-        ("steep_ballistic", Self::SteepBallistic),
-        ("medium_glide", Self::MediumGlide),
-    ];
-
-    fn to_core(self) -> analytic::Solution {
-        match self {
-            Self::ShallowGlide => analytic::Solution::ShallowGlide,
-            Self::Loh => analytic::Solution::Loh,
-            Self::SteepGlide => analytic::Solution::SteepGlide,
-            Self::SteepBallistic => analytic::Solution::SteepBallistic,
-            Self::MediumGlide => analytic::Solution::MediumGlide,
-        }
-    }
-}
-
-/// A case to simulate, as for `/simulate`, and the theory to set beside it.
-#[derive(Clone, Debug)]
-pub struct AnalyticRequest {
-    /// The theory.
-    pub solution: Solution,
-    /// The case.
-    pub case: SimulateRequest,
-}
-
-/// The fields of [`SimulateRequest`], whatever they are, without `heating`, which the theories do not know, and with `solution`.
-impl PartialSchema for AnalyticRequest {
-    fn schema() -> RefOr<Schema> {
-        let RefOr::T(Schema::Object(mut case)) = SimulateRequest::schema() else { return SimulateRequest::schema() };
-        case.properties.shift_remove("heating");
-        let description = "A case to simulate, as for `/simulate`, and the theory to set beside it. \
-                           `output` cannot be `{\"trajectory\": false}`: the predictions are made at the rows.";
-        let solution = RefBuilder::new()
-            .ref_location_from_schema_name(Solution::name())
-            .description(Some("The theory to set beside the simulated flight."));
-        let builder = ObjectBuilder::from(case).description(Some(description));
-        builder.property("solution", solution).required("solution").into()
-    }
-}
-
-impl ToSchema for AnalyticRequest {
-    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
-        schemas.push((Solution::name().into(), Solution::schema()));
-        SimulateRequest::schemas(schemas);
-    }
+/// What every theory asks of its case: constant coefficients, exponential air, the rows of a flight; and lift, or none.
+fn conditions_of_theories() -> Value {
+    let positive = json!({"exclusiveMinimum": 0});
+    let constant = json!({"type": {"enum": ["constant", "ballistic"]}, "drag_coefficient": positive});
+    let aerodynamics = |schema: Value| json!({"vehicle": {"properties": {"aerodynamics": schema}}});
+    let lift = |bound: Value| json!({"lift_coefficient": bound, "lift_to_drag": bound});
+    let some = json!({
+        "properties": lift(json!({"not": {"const": 0}})),
+        "anyOf": [{"required": ["lift_coefficient"]}, {"required": ["lift_to_drag"]}],
+    });
+    json!({
+        "properties": {
+            "atmosphere": {"properties": {"type": {"const": "exponential"}, "surface_density": positive}},
+            "density_factor": positive,
+            "vehicle": {"properties": {"reference_area": positive, "aerodynamics": {"properties": constant}}},
+            "output": {"properties": {"trajectory": false, "columns": false}},
+        },
+        "if": {"properties": {"solution": {"const": "steep_ballistic"}}},
+        "then": {"properties": aerodynamics(json!({"properties": lift(json!({"const": 0}))}))},
+        "else": {"properties": aerodynamics(some)},
+    })
 }
 
 /// A sound request: a case that can be flown, and a theory that applies to it.
@@ -106,12 +96,8 @@ impl AnalyticJob {
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
     pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
-        let AnalyticRequest { solution, case: request } = reader::read(&mut tree, |object| {
-            let solution = object.choice("solution", &Solution::NAMES);
-            let case = SimulateRequest::read(object);
-            Some(AnalyticRequest { solution: solution?, case: case? })
-        })?;
-        let sampling = request.output.sampling();
+        let (solution, request) = description::read(&mut tree, analytic_request)?;
+        let sampling = request.output.sampling.clone();
         let mut misplaced = request.beyond_rows(wanted);
         if request.output.columns.is_some() {
             let detail = "must not be given: this answer has columns of its own";
@@ -125,13 +111,13 @@ impl AnalyticJob {
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
         let (scenario, theory) = match request.try_into_scenario() {
-            Ok(scenario) => match Theory::new(solution.to_core(), &scenario) {
+            Ok(scenario) => match Theory::new(solution, &scenario) {
                 Ok(theory) => (Ok(scenario), Ok(theory)),
                 Err(error) => (Ok(scenario), Err(error.0)),
             },
             Err(faults) => {
-                let (vehicle, atmosphere) = (request.vehicle.clone(), request.atmosphere.to_core());
-                let theory = solution.to_core().vehicle_faults(&vehicle, &atmosphere, request.density_factor);
+                let SimulateRequest { vehicle, atmosphere, density_factor, .. } = &request;
+                let theory = solution.vehicle_faults(vehicle, &atmosphere.core, *density_factor);
                 let events = (!request.events.is_empty()).then_some(TheoryFault::Events);
                 (Err(faults), Err(theory.into_iter().chain(events).collect()))
             }
@@ -151,7 +137,8 @@ impl AnalyticJob {
 
 /// What keeps a theory from applying, at the field of the request that it concerns.
 fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
-    let has_angle = matches!(request.initial_state, State::PlanetRelative(_) | State::Geodetic(_));
+    let has_angle =
+        matches!(request.initial_state.coordinates, Coordinates::PlanetRelative { .. } | Coordinates::Geodetic(_));
     let by_ratios = matches!(request.vehicle.aerodynamics, Aerodynamics::Ballistic { .. });
     let pointer = match fault {
         TheoryFault::NoLift | TheoryFault::Lift { .. } if by_ratios => "/vehicle/aerodynamics/lift_to_drag",
@@ -240,8 +227,10 @@ pub struct AnalyticResponse {
     #[schema(required = false, nullable = false)]
     pub name: Option<String>,
     /// As in the request.
-    pub solution: Solution,
+    #[schema(value_type = names::Solution)]
+    pub solution: &'static str,
     /// The unit of every angle.
+    #[schema(value_type = names::AngleUnit)]
     pub angle_unit: AngleUnit,
     /// Of the service.
     pub version: &'static str,
@@ -265,7 +254,7 @@ pub struct AnalyticResponse {
     pub warnings: Vec<Warning>,
     /// The request with every default filled in, with `echo`: it can be sent again.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = AnalyticRequest)]
+    #[schema(required = false, value_type = names::AnalyticRequest)]
     pub case: Option<Value>,
 }
 
@@ -304,12 +293,12 @@ impl AnalyticResponse {
         if is_given(&request.control.bank_angle) {
             warnings.push(Warning::bank_left_out());
         }
-        if request.wind.as_ref().is_some_and(Wind::blows) {
+        if request.wind.blows {
             warnings.push(Warning::wind_left_out());
         }
         Self {
             name: request.name,
-            solution,
+            solution: SOLUTIONS.of(solution),
             angle_unit: unit,
             version: env!("CARGO_PKG_VERSION"),
             differences: Differences {

@@ -15,15 +15,11 @@ const AGAINST: Words<Against> = Words {
     name: "Against",
     doc: "What a schedule runs along.",
     words: &[
-        word("time", Against::Time, "Time, s", "Since the start, s."),
-        word("altitude", Against::Altitude, "Altitude, m", "Along the radius vector, m."),
-        word("speed", Against::Speed, "Speed, m/s", "Relative to the rotating planet, m/s."),
-        word(
-            "mach",
-            Against::Mach,
-            "Mach number",
-            "The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound.",
-        ),
+        word("time", Against::Time, "Time, s").doc("Since the start, s."),
+        word("altitude", Against::Altitude, "Altitude, m").doc("Along the radius vector, m."),
+        word("speed", Against::Speed, "Speed, m/s").doc("Relative to the rotating planet, m/s."),
+        word("mach", Against::Mach, "Mach number")
+            .doc("The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound."),
     ],
 };
 
@@ -32,8 +28,8 @@ const INTERPOLATION: Words<Interpolation> = Words {
     name: "Interpolation",
     doc: "What a schedule does between its entries.",
     words: &[
-        word("linear", Interpolation::Linear, "Straight lines", "Straight lines."),
-        word("step", Interpolation::Step, "Steps", "An entry's value holds from it up to the next greater one."),
+        word("linear", Interpolation::Linear, "Straight lines").doc("Straight lines."),
+        word("step", Interpolation::Step, "Steps").doc("An entry's value holds from it up to the next greater one."),
     ],
 };
 
@@ -48,16 +44,14 @@ const COMMAND: Union = Union {
 /// How the vehicle is flown.
 pub(super) fn control(object: &mut Object) -> Option<Control> {
     object.named("Control", "How the vehicle is flown: each angle a number, or by a schedule.");
-    let bank_angle = command(object.field(
-        "bank_angle",
-        "Bank angle",
+    let bank_angle = command(object.field("bank_angle", "Bank angle").doc(
         "0: lift upward in the plane of radius and velocity; positive tilts it to the left of the flight direction.",
     ));
-    let angle_of_attack = command(object.field(
-        "angle_of_attack",
-        "Angle of attack",
-        "On which the coefficients of an `alpha_mach_table` depend, and no other.",
-    ));
+    let angle_of_attack = command(
+        object
+            .field("angle_of_attack", "Angle of attack")
+            .doc("On which the coefficients of an `alpha_mach_table` depend, and no other."),
+    );
     Some(Control { bank_angle: bank_angle?, angle_of_attack: angle_of_attack? })
 }
 
@@ -80,7 +74,7 @@ fn schedule(object: &mut Object) -> Option<Schedule> {
 }
 
 fn entries(object: &mut Object) -> Option<Schedule> {
-    let against = object.field("against", "Against", "What it runs along.").word(&AGAINST);
+    let against = object.field("against", "Against").doc("What it runs along.").word(&AGAINST);
     let (bound, unit) = match against {
         Some(Against::Time) => (Bound::NON_NEGATIVE, "s"),
         Some(Against::Altitude) => (Bound::DISTANCE, "m"),
@@ -89,7 +83,8 @@ fn entries(object: &mut Object) -> Option<Schedule> {
         None => (Bound::FINITE, ""),
     };
     let at = object
-        .field("at", "At", "Ascending, in the unit of the quantity; time, speed and Mach number at least 0.")
+        .field("at", "At")
+        .doc("Ascending, in the unit of the quantity; time, speed and Mach number at least 0.")
         .unit(unit)
         .ascending()
         .numbers(bound, [1, MOST_ENTRIES]);
@@ -98,10 +93,11 @@ fn entries(object: &mut Object) -> Option<Schedule> {
         json!({"if": is("against", "altitude"), "then": at(Bound::DISTANCE), "else": at(Bound::NON_NEGATIVE)})
     });
     let value =
-        object.field("value", "Angle", "The angles there, within ±2π (±360°).").angles(Bound::TURN, MOST_ENTRIES);
+        object.field("value", "Angle").doc("The angles there, within ±2π (±360°).").angles(Bound::TURN, MOST_ENTRIES);
     let sound = object.equally_long("at", &["value"]);
     let interpolation = object
-        .field("interpolation", "In between", "What it does between its entries.")
+        .field("interpolation", "In between")
+        .doc("What it does between its entries.")
         .default("linear")
         .word(&INTERPOLATION);
     let (against, at, value, interpolation) = (against?, at?, value?, interpolation?);

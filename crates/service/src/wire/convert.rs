@@ -1,70 +1,95 @@
 //! The request and the answer of `/convert`.
 
-use reentry::coordinates::{
-    FlightPath, Geodetic as CoreGeodetic, Inertial, InertialFlightPath as CoreInertialFlightPath,
-    OrbitalElements as CoreElements,
-};
+use reentry::coordinates::{FlightPath, Geodetic, Inertial, InertialFlightPath, OrbitalElements as CoreElements};
 use reentry::planet::Planet as CorePlanet;
 use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
+use super::description::{self, Object};
 use super::epoch::Epoch;
-use super::planet::Planet;
-use super::reader::{self, Fault, Object};
-use super::scenario::read_epoch;
-use super::state::{Ecef, Eci, Geodetic, InertialFlightPath, OrbitalElements, PlanetRelative, State};
+use super::planet::{Planet, planet};
+use super::reader::Fault;
+use super::scenario::{angle_unit, epoch};
+use super::schema::names;
+use super::state::{State, answer, inertial_conditions, state};
 use super::warning::Warning;
 
-/// A state to convert. SI units; angles in `angle_unit`.
-#[derive(Clone, Debug, ToSchema)]
+/// A state to convert.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the fields are those of the request, where they are described")]
 pub struct ConvertRequest {
-    /// The unit of every angle in the request and in the answer. Without it, an angle other than 0 comes with the warning
-    /// `angle_unit_assumed`.
-    #[schema(required = false, default = "rad")]
     pub angle_unit: AngleUnit,
-    /// Whether the answer repeats the request, with every default filled in, as `case`.
-    #[schema(required = false, default = false)]
     pub echo: bool,
-    /// The planet.
-    #[schema(required = false)]
     pub planet: Planet,
-    /// The instant of the state: an RFC 3339 time. On the Earth it gives the angle to the inertial frame,
-    /// where the state gives none; on a custom planet it gives none.
-    #[schema(required = false, value_type = String, format = DateTime)]
     pub epoch: Option<Epoch>,
-    /// The state.
     pub state: State,
     /// Whether the unit of angles is left out, though some angle is not 0.
-    #[schema(ignore)]
     pub assumes_angle_unit: bool,
+}
+
+/// A request of `/convert`.
+pub fn convert_request(object: &mut Object) -> Option<ConvertRequest> {
+    object.named("ConvertRequest", "A state to convert. SI units; angles in `angle_unit`.");
+    let has_unit = object.has("angle_unit");
+    let angle_unit = angle_unit(object);
+    let echo = object
+        .field("echo", "Repeat the case in the answer")
+        .doc("Whether the answer repeats the request, with every default filled in, as `case`.")
+        .default(false)
+        .boolean();
+    let planet = object.field("planet", "Planet").doc("The planet.").default(json!({})).object(planet);
+    let epoch = epoch(
+        object,
+        "The instant of the state: an RFC 3339 time. On the Earth it gives the angle to the inertial frame, where the state gives none; on a \
+         custom planet it gives none.",
+    );
+    let has_epoch = object.has("epoch");
+    let state = object.field("state", "State").doc("The state.").object(|object| state(object, has_epoch));
+    inertial_conditions(object, "state");
+    let assumes_angle_unit = !has_unit && object.turns();
+    Some(ConvertRequest {
+        angle_unit: angle_unit?,
+        echo: echo?,
+        planet: planet?,
+        epoch,
+        state: state?,
+        assumes_angle_unit,
+    })
 }
 
 /// The state in every coordinate system; each can be sent back as it is.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct ConvertResponse {
     /// The unit of every angle.
+    #[schema(value_type = names::AngleUnit)]
     pub angle_unit: AngleUnit,
     /// Against the geocentric horizontal.
-    pub planet_relative: PlanetRelative,
+    #[schema(value_type = names::PlanetRelative)]
+    pub planet_relative: Value,
     /// Against the geodetic horizontal.
-    pub geodetic: Geodetic,
+    #[schema(value_type = names::Geodetic)]
+    pub geodetic: Value,
     /// Planet-fixed vectors.
-    pub ecef: Ecef,
+    #[schema(value_type = names::Ecef)]
+    pub ecef: Value,
     /// Inertial vectors.
-    pub eci: Eci,
+    #[schema(value_type = names::Eci)]
+    pub eci: Value,
     /// The orbit; null for motion towards or away from the planet's centre, which has no elements.
-    pub orbital_elements: Option<OrbitalElements>,
+    #[schema(value_type = Option<names::OrbitalElements>)]
+    pub orbital_elements: Option<Value>,
     /// Speed and angles of the inertial velocity, against the geocentric horizontal.
-    pub inertial_flight_path: InertialFlightPath,
+    #[schema(value_type = names::InertialFlightPath)]
+    pub inertial_flight_path: Value,
     /// What follows from the state.
     pub derived: Derived,
     /// What the user should know.
     pub warnings: Vec<Warning>,
     /// The request with every default filled in, with `echo`: it can be sent again.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = ConvertRequest)]
+    #[schema(required = false, value_type = names::ConvertRequest)]
     pub case: Option<Value>,
 }
 
@@ -87,27 +112,13 @@ pub struct Derived {
     pub period: Option<f64>,
 }
 
-impl ConvertRequest {
-    fn read(object: &mut Object) -> Option<Self> {
-        let has_unit = object.has("angle_unit");
-        let angle_unit = object.angle_unit();
-        let echo = object.boolean_or("echo", false);
-        let planet = object.object_or("planet", json!({}), Planet::read);
-        let epoch = read_epoch(object);
-        let has_epoch = object.has("epoch");
-        let state = object.object("state", |object| State::read(object, has_epoch));
-        let assumes_angle_unit = !has_unit && object.turns();
-        Some(Self { angle_unit: angle_unit?, echo: echo?, planet: planet?, epoch, state: state?, assumes_angle_unit })
-    }
-}
-
 impl ConvertResponse {
     /// Parses, checks and answers a request.
     ///
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
     pub fn try_from_tree(mut tree: Value) -> Result<Self, Vec<Fault>> {
-        let request = reader::read(&mut tree, ConvertRequest::read)?;
+        let request = description::read(&mut tree, convert_request)?;
         let (unit, planet) = (request.angle_unit, request.planet.core);
         let shape_faults = reentry::scenario::planet_faults(&planet, &reentry::scenario::Stop::default());
         if !shape_faults.is_empty() {
@@ -126,21 +137,17 @@ impl ConvertResponse {
             Err(_) => warnings.push(Warning::rectilinear()),
         }
         warnings.extend(Warning::of_frame(&request.state, request.epoch, &request.planet));
-        let geodetic = CoreGeodetic::from_planet_fixed(&state, &planet.shape);
+        let geodetic = Geodetic::from_planet_fixed(&state, &planet.shape);
         Ok(Self {
             angle_unit: unit,
-            planet_relative: PlanetRelative::from_core(
-                &FlightPath::from_planet_fixed(&state).wrapped(),
-                unit,
-                sidereal,
-            ),
-            geodetic: Geodetic::from_core(&geodetic, unit, sidereal),
-            ecef: Ecef::from_core(&state, sidereal),
-            eci: Eci::from_core(&inertial, frame, orientation.given()),
+            planet_relative: answer::planet_relative(&FlightPath::from_planet_fixed(&state).wrapped(), unit, sidereal),
+            geodetic: answer::geodetic(&geodetic, unit, sidereal),
+            ecef: answer::ecef(&state, sidereal),
+            eci: answer::eci(&inertial, frame, orientation.given()),
             orbital_elements: elements_only
-                .map(|elements| OrbitalElements::from_core(&elements, unit, frame, orientation.given())),
-            inertial_flight_path: InertialFlightPath::from_core(
-                &CoreInertialFlightPath::from_planet_fixed(&state, &planet),
+                .map(|elements| answer::orbital_elements(&elements, unit, frame, orientation.given())),
+            inertial_flight_path: answer::inertial_flight_path(
+                &InertialFlightPath::from_planet_fixed(&state, &planet),
                 unit,
                 sidereal,
             ),

@@ -5,8 +5,8 @@
 //! ```text
 //! fn vehicle(object: &mut Object) -> Option<Vehicle> {
 //!     object.named("Vehicle", "A point mass with lift and drag.");
-//!     let mass = object.field("mass", "Mass", "kg.").unit("kg").number(Bound::POSITIVE);
-//!     let nose_radius = object.field("nose_radius", "Nose radius", "…").unit("m").optional().number(Bound::POSITIVE);
+//!     let mass = object.field("mass", "Mass").doc("…").unit("kg").number(Bound::POSITIVE);
+//!     let nose_radius = object.field("nose_radius", "Nose radius").doc("…").unit("m").optional().number(Bound::POSITIVE);
 //!     Some(Vehicle { mass: mass?, nose_radius })
 //! }
 //! ```
@@ -20,7 +20,7 @@ use reentry::scenario::Bound;
 use serde_json::{Value, json};
 
 use super::AngleUnit;
-use super::reader::{self, Fault, MOST_COLUMNS, MOST_ROWS, NumberField, ObjectReader};
+use super::reader::{self, Fault, MOST_COLUMNS, MOST_ROWS, NumberField, NumberOrList, ObjectReader};
 use super::schema::{self, ANGLE, Components, ObjectSchema, Property};
 
 /// An object of a request: one that is read, or one whose schema is written.
@@ -73,18 +73,23 @@ pub struct Word<T> {
     doc: &'static str,
 }
 
-/// A word, what it stands for, a label and a description.
-pub const fn word<T>(word: &'static str, meaning: T, title: &'static str, doc: &'static str) -> Word<T>
-where
-    T: Copy,
-{
-    Word { word, meaning, title, doc }
+/// A word, what it stands for, and a label.
+pub const fn word<T: Copy>(word: &'static str, meaning: T, title: &'static str) -> Word<T> {
+    Word { word, meaning, title, doc: "" }
+}
+
+impl<T: Copy> Word<T> {
+    /// Describes it, for the reader of the document.
+    #[must_use]
+    pub const fn doc(self, doc: &'static str) -> Self {
+        Self { doc, ..self }
+    }
 }
 
 /// The words of a field, with the name and the description of their schema.
 #[derive(Clone, Copy, Debug)]
 pub struct Words<T: 'static> {
-    /// The name of their schema.
+    /// The name of their schema; empty where it needs none.
     pub name: &'static str,
     /// The description of their schema.
     pub doc: &'static str,
@@ -107,15 +112,13 @@ impl<T: Copy> Words<T> {
     /// Puts the schema of the words among the components, and refers to it.
     fn component(&self, object: &mut ObjectSchema) -> Value {
         let mut schema = schema::words(&self.all());
-        schema["description"] = json!(self.doc);
-        for (keyword, text) in
-            [("x-titles", (|word| word.title) as fn(&Word<T>) -> &'static str), ("x-descriptions", |word| word.doc)]
-        {
-            for word in self.words.iter().filter(|word| !text(word).is_empty()) {
-                schema[keyword][word.word] = json!(text(word));
-            }
+        let mut doc = vec![self.doc.to_owned()];
+        for word in self.words.iter().filter(|word| !word.title.is_empty()) {
+            doc.push(format!("`{}`: {}", word.word, word.doc));
+            schema["x-titles"][word.word] = json!(word.title);
         }
-        object.component(self.name, schema)
+        schema["description"] = json!(doc.join(" "));
+        if self.name.is_empty() { schema } else { object.component(self.name, schema) }
     }
 }
 
@@ -136,6 +139,9 @@ pub fn variant<'a, T>(
 ) -> Variant<'a, T> {
     Variant { word, title, doc, read }
 }
+
+/// The field by which an alternative is called, and the description of its fields.
+pub type Alternative<'a, T> = (&'static str, &'a dyn Fn(&mut Object) -> Option<T>);
 
 /// A value that is written in a simple way, or as an object.
 pub struct Union {
@@ -171,9 +177,9 @@ impl<'a, 'b> Object<'a, 'b> {
         }
     }
 
-    /// A field: its name, a label for forms, and a description. What it holds is said by the methods of [`Field`].
-    pub fn field<'f>(&'f mut self, name: &'static str, title: &'static str, doc: &'static str) -> Field<'f, 'a, 'b> {
-        Field { object: self, name, title, doc, unit: "", need: Need::Required, is_ascending: false }
+    /// A field: its name, and a label for forms. What it means and what it holds is said by the methods of [`Field`].
+    pub fn field<'f>(&'f mut self, name: &'static str, title: &'static str) -> Field<'f, 'a, 'b> {
+        Field { object: self, name, title, doc: "", unit: "", need: Need::Required, is_ascending: false }
     }
 
     /// The kind of the object by its field `type`, which `doc` describes, and by it what the object is.
@@ -188,7 +194,7 @@ impl<'a, 'b> Object<'a, 'b> {
                 let described = variants.iter().map(|variant| {
                     let reference = schema.object(|schema| {
                         let mut object = Object(Mode::Describe(schema));
-                        object.field("type", "Type", doc).constant(variant.word);
+                        object.field("type", "Type").doc(doc).constant(variant.word);
                         (variant.read)(&mut object);
                     });
                     (variant.word, variant.title, variant.doc, reference)
@@ -207,7 +213,7 @@ impl<'a, 'b> Object<'a, 'b> {
         doc: &'static str,
         read: impl FnOnce(&mut Object) -> Option<T>,
     ) -> Option<T> {
-        let kind = self.field("type", "Type", doc).constant(word);
+        let kind = self.field("type", "Type").doc(doc).constant(word);
         if matches!(self.0, Mode::Describe(_)) || kind.is_some() { read(self) } else { None }
     }
 
@@ -245,6 +251,65 @@ impl<'a, 'b> Object<'a, 'b> {
                 None
             }
         }
+    }
+
+    /// One of two sets of fields, each of which is given whole or not at all: the second where the request gives some of it, or else the first.
+    pub fn one_set<T>(
+        &mut self,
+        sets: [[&'static str; 2]; 2],
+        first: impl FnOnce(&mut Object) -> Option<T>,
+        second: impl FnOnce(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        match &mut self.0 {
+            Mode::Read(reader) => match sets.map(|names| names.map(|name| reader.has(name)).contains(&true)) {
+                [true, true] => {
+                    let [[a, b], [c, d]] = sets;
+                    reader.fault(format!("must have {a} and {b}, or {c} and {d}, got some of both"))
+                }
+                [false, true] => second(self),
+                [_, false] => first(self),
+            },
+            Mode::Describe(schema) => {
+                schema.one_set(sets, |schema| {
+                    first(&mut Object(Mode::Describe(schema)));
+                    second(&mut Object(Mode::Describe(schema)));
+                });
+                None
+            }
+        }
+    }
+
+    /// One of several fields, each with those that belong beside it: the field by which an alternative is called, and its description, which
+    /// reads that field too. Notes a fault unless the request gives exactly one of them.
+    pub fn alternatives<T>(&mut self, alternatives: &[Alternative<T>]) -> Option<T> {
+        let names: Vec<_> = alternatives.iter().map(|(name, _)| *name).collect();
+        match &mut self.0 {
+            Mode::Read(reader) => {
+                let Some(chosen) = reader.exactly_one(&names) else {
+                    // Which of the other fields belong here is not known.
+                    let mut components = Components::new();
+                    let mut schema = ObjectSchema::new(&mut components);
+                    for (_, describe) in alternatives {
+                        describe(&mut Object(Mode::Describe(&mut schema)));
+                    }
+                    schema.field_names().iter().for_each(|name| _ = reader.has(name));
+                    return None;
+                };
+                alternatives.iter().find(|(name, _)| *name == chosen).and_then(|(_, read)| read(self))
+            }
+            Mode::Describe(schema) => {
+                for (name, describe) in alternatives {
+                    schema.alternative(name, |schema| _ = describe(&mut Object(Mode::Describe(schema))));
+                }
+                _ = self.exactly_one(&names);
+                None
+            }
+        }
+    }
+
+    /// Notes a fault unless exactly one of the fields is given, which a condition asks for in the schema.
+    pub fn one_given(&mut self, names: &[&'static str]) -> Option<&'static str> {
+        self.reader().and_then(|reader| reader.exactly_one(names))
     }
 
     /// Notes a fault unless exactly one of the fields, which may each be left out, is given; returns its name.
@@ -352,6 +417,13 @@ pub struct Field<'f, 'a, 'b> {
 }
 
 impl Field<'_, '_, '_> {
+    /// Describes it, for the reader of the document.
+    #[must_use]
+    pub fn doc(mut self, doc: &'static str) -> Self {
+        self.doc = doc;
+        self
+    }
+
     /// The unit of its numbers.
     #[must_use]
     pub fn unit(mut self, unit: &'static str) -> Self {
@@ -409,7 +481,7 @@ impl Field<'_, '_, '_> {
     /// A number.
     pub fn number(self, bound: Bound) -> Option<f64> {
         let unit = self.unit;
-        self.take(|_| schema::number(bound), |reader, name| reader.number_in(name, bound, unit))
+        self.take(|_| schema::number(bound), |reader, name| reader.number(name, bound, unit))
     }
 
     /// An angle, in radians; so is the bound.
@@ -428,13 +500,13 @@ impl Field<'_, '_, '_> {
         if most < usize::MAX {
             schema["maximum"] = json!(most);
         }
-        self.take(|_| schema, |reader, name| reader.whole_number_between(name, [least, most]))
+        self.take(|_| schema, |reader, name| reader.whole_number(name, [least, most]))
     }
 
     /// Three numbers.
     pub fn vector(self, bound: Bound) -> Option<[f64; 3]> {
         let unit = self.unit;
-        self.take(|_| schema::list(&schema::number(bound), [3, 3]), |reader, name| reader.vector_in(name, bound, unit))
+        self.take(|_| schema::list(&schema::number(bound), [3, 3]), |reader, name| reader.vector(name, bound, unit))
     }
 
     /// Numbers, so many at least and at most.
@@ -443,9 +515,7 @@ impl Field<'_, '_, '_> {
         self.take(
             |_| schema::list(&schema::number(bound), counts),
             |reader, name| {
-                reader
-                    .numbers_in(name, bound, counts, unit)
-                    .filter(|it| !is_ascending || reader.ascending(name, "", it))
+                reader.numbers(name, bound, counts, unit).filter(|it| !is_ascending || reader.ascending(name, "", it))
             },
         )
     }
@@ -456,10 +526,41 @@ impl Field<'_, '_, '_> {
         self.unit(ANGLE).take(
             |_| schema::list(&schema::number(schema::widened(bound)), [1, most]),
             |reader, name| {
-                let angles = reader.angles_in(name, bound, [1, most])?;
+                let angles = reader.angles(name, bound, [1, most])?;
                 let sound = !is_ascending || reader.ascending(name, "", &angles);
-                let unit = reader.unit().filter(|_| sound)?;
+                let unit = reader.angle_unit().filter(|_| sound)?;
                 Some(angles.into_iter().map(|angle| unit.to_radians(angle)).collect())
+            },
+        )
+    }
+
+    /// A number for all entries of a table, or a number for each.
+    pub fn number_or_numbers(self, bound: Bound, counts: [usize; 2]) -> Option<NumberOrList> {
+        let unit = self.unit;
+        self.take(
+            |schema| {
+                let mut number = schema::number(Bound::FINITE);
+                let mut list = schema::list(&number, [0, usize::MAX]);
+                (number["description"], list["description"]) = (json!("For all."), json!("For each."));
+                let doc = "A number for all entries of a table, or one for each.";
+                let either = json!({"oneOf": [number, list], "description": doc});
+                // The keywords beside the reference are each of one of the two alone.
+                let mut schema = schema.component("NumberOrList", either);
+                schema::extend(&mut schema, schema::bounds(bound));
+                schema::extend(&mut schema, schema::list(&schema::bounds(bound), counts));
+                if let Some(schema) = schema.as_object_mut() {
+                    schema.shift_remove("type");
+                }
+                schema
+            },
+            |reader, name| match reader.required(name)? {
+                Value::Number(_) => reader.number(name, bound, unit).map(NumberOrList::Number),
+                Value::Array(_) => reader.numbers(name, bound, counts, unit).map(NumberOrList::List),
+                other => {
+                    let detail = format!("must be a number or an array of numbers, got {}", reader::kind_of(other));
+                    reader.fault_of(name, detail);
+                    None
+                }
             },
         )
     }
@@ -469,7 +570,7 @@ impl Field<'_, '_, '_> {
         let unit = self.unit;
         self.take(
             |_| schema::list(&schema::list(&schema::number(bound), [1, MOST_COLUMNS]), [1, MOST_ROWS]),
-            |reader, name| reader.matrix_in(name, bound, along, unit),
+            |reader, name| reader.matrix(name, bound, along, unit),
         )
     }
 
@@ -516,14 +617,25 @@ impl Field<'_, '_, '_> {
         self.take(|_| schema(), |reader, name| reader.value(name, read))
     }
 
-    /// The same, whose schema has a name.
-    pub fn named_value<T>(
+    /// A number within the bound, or text that says one: something with a reader of its own, and a schema with a name.
+    pub fn number_or_text<T>(
         self,
         component: &'static str,
+        bound: Bound,
         schema: impl FnOnce() -> Value,
         read: impl FnOnce(&Value) -> Result<T, String>,
     ) -> Option<T> {
-        self.take(|object| object.component(component, schema()), |reader, name| reader.value(name, read))
+        let unit = self.unit;
+        self.take(
+            |object| object.component(component, schema()),
+            |reader, name| {
+                let value = reader.value(name, read)?;
+                if reader.required(name)?.is_number() {
+                    reader.list_number(name, bound, unit);
+                }
+                Some(value)
+            },
+        )
     }
 
     /// An object.
@@ -586,7 +698,11 @@ impl Field<'_, '_, '_> {
                 if reader.has_object(name) {
                     return reader.object(name, |object| reading(object, &read));
                 }
-                reader.word(name, &words.all()).map(|chosen| words.words[chosen].meaning)
+                let chosen = match words.all()[..] {
+                    [only] => reader.only_word(name, only),
+                    ref several => reader.word(name, several),
+                };
+                chosen.map(|chosen| words.words[chosen].meaning)
             },
         )
     }

@@ -9,11 +9,9 @@ use std::ops::Range;
 use reentry::coordinates::earth_rotation_angle;
 use reentry::scenario::Bound;
 use serde::{Serialize, Serializer};
-use serde_json::Value;
-use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, Type};
-use utoipa::openapi::{RefOr, Schema};
-use utoipa::{PartialSchema, ToSchema};
+use serde_json::{Value, json};
 
+use super::schema;
 use super::shown::shown;
 use calendar::{Date, days_since_2000};
 
@@ -21,31 +19,28 @@ use calendar::{Date, days_since_2000};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SiderealTime(pub f64);
 
-impl PartialSchema for SiderealTime {
-    fn schema() -> RefOr<Schema> {
-        let seconds = ObjectBuilder::new()
-            .schema_type(Type::Number)
-            .minimum(Some(Bound::SIDEREAL_TIME.minimum))
-            .maximum(Some(Bound::SIDEREAL_TIME.maximum))
-            .description(Some("Seconds; answers give these."));
-        let clock = ObjectBuilder::new()
-            .schema_type(Type::String)
-            .description(Some("`HH:MM:SS.s`, the hours with two digits or more, up to 1e9 s."))
-            .pattern(Some(CLOCK_PATTERN));
-        OneOfBuilder::new()
-            .item(seconds)
-            .item(clock)
-            .description(Some("The time since the inertial and the planet-fixed frame were aligned."))
-            .into()
-    }
+/// The schema of what [`SiderealTime::read`] reads.
+pub fn sidereal_time_schema() -> Value {
+    let mut seconds = schema::number(Bound::SIDEREAL_TIME);
+    seconds["description"] = json!("Seconds; answers give these.");
+    let clock = json!({
+        "type": "string",
+        "description": "`HH:MM:SS.s`, the hours with two digits or more, up to 1e9 s.",
+        "pattern": CLOCK_PATTERN,
+    });
+    let doc = "The time since the inertial and the planet-fixed frame were aligned.";
+    json!({"oneOf": [seconds, clock], "description": doc})
 }
 
-impl ToSchema for SiderealTime {}
+/// The schema of what [`Epoch::read`] reads.
+pub fn epoch_schema() -> Value {
+    json!({"type": "string", "format": "date-time", "pattern": RFC3339_PATTERN})
+}
 
 /// What [`SiderealTime::read`] takes for a clock.
 const CLOCK_PATTERN: &str = r"^[0-9]{2,}:[0-5][0-9]:[0-5][0-9](\.[0-9]+)?$";
 /// What [`Epoch::read`] takes for the form of a time; the calendar is checked beyond it.
-pub const RFC3339_PATTERN: &str =
+const RFC3339_PATTERN: &str =
     r"^[0-9]{4}-[0-9]{2}-[0-9]{2}[Tt][0-2][0-9]:[0-5][0-9]:[0-6][0-9](\.[0-9]+)?([Zz]|[+-][0-2][0-9]:[0-5][0-9])$";
 
 impl SiderealTime {

@@ -5,313 +5,401 @@ use std::collections::hash_map::Entry;
 
 use reentry::coordinates::Rotation;
 use reentry::event::{
-    Condition as CoreCondition, Direction, Effect as CoreEffect, Engine, Event as CoreEvent, Quantity as CoreQuantity,
-    Trigger,
+    Condition as Crossing, Direction, Effect as CoreEffect, Engine, Event as CoreEvent, Quantity, Trigger,
 };
-use reentry::parachute::Parachute as CoreParachute;
-use reentry::propulsion::{Impulse, Thrust as CoreThrust, ThrustAxis as CoreAxis};
+use reentry::parachute::Parachute;
+use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::scenario::Bound;
 use reentry::vehicle::{Aerodynamics, Vehicle};
-use serde::Serialize;
 use serde_json::json;
-use utoipa::openapi::schema::{ObjectBuilder, OneOfBuilder, RefBuilder, Type};
-use utoipa::openapi::{RefOr, Schema};
-use utoipa::{PartialSchema, ToSchema};
 
-use super::AngleUnit;
-use super::description::reading;
-use super::reader::{Fault, MOST_FAULTS, Object};
-use super::schema::names;
+use super::description::{Object, Union, Words, word};
+use super::reader::{Fault, MOST_FAULTS};
+use super::schema::{bounds, is, widened};
 use super::shown::{quoted, shown};
 use super::vehicle::aerodynamics;
 
 /// The greatest number of events, and of conditions that end a flight.
 pub const MOST_EVENTS: usize = 1000;
 
-/// Something that happens once: at the first instant at which its condition is met, and never again. Events of one instant happen in the
-/// order of their list, each on what the ones before it have made.
-#[derive(Clone, Debug, ToSchema)]
+/// An event of a request.
+#[derive(Clone, Debug)]
 pub struct Event {
     /// Given back in the answer.
-    #[schema(required = false)]
     pub name: Option<String>,
-    /// When.
+    /// What it waits for.
     pub when: Condition,
-    /// What it changes; without anything it is a mark, whose state the answer tells.
-    #[schema(required = false)]
+    /// What it changes.
     pub then: Effect,
 }
 
-/// A quantity passes a value, downwards or upwards, or so much time has passed since another event.
-///
-/// A condition on a quantity is met at the first instant at which the quantity, having been on the near side, is on the value or beyond,
-/// whether it moved there or jumped, as the load factor does where a parachute opens. A quantity that begins on the value meets it at
-/// once if it moves on to the far side, however slowly; one that begins beyond must come back first.
-#[derive(Clone, Debug, ToSchema)]
-pub struct Condition {
-    /// Which quantity passes the value.
-    #[schema(required = false, value_type = Quantity)]
-    pub quantity: Option<CoreQuantity>,
-    /// The value, from above, in the unit of the quantity; an angle in `angle_unit`. Not for time.
-    #[schema(required = false, value_type = f64)]
-    pub falls_through: Option<f64>,
-    /// The value, from below, in the unit of the quantity; an angle in `angle_unit`.
-    #[schema(required = false, value_type = f64)]
-    pub rises_through: Option<f64>,
-    /// The name of another event, which happens before.
-    #[schema(required = false, value_type = String)]
-    pub event: Option<String>,
-    /// Seconds after that event.
-    #[schema(required = false, value_type = f64, minimum = 0, maximum = 1e9, default = 0)]
-    pub delay: Option<f64>,
+/// What an event or the end of a flight waits for.
+#[derive(Clone, Debug)]
+pub enum Condition {
+    /// A quantity passes a value.
+    Crossing(Crossing),
+    /// So much time, s, has passed since the event of this name.
+    After(String, f64),
 }
 
-/// What may pass a value, with its name and its meaning.
-pub static QUANTITIES: [(&str, CoreQuantity, &str); 21] = [
-    ("time", CoreQuantity::Time, "since the start, s"),
-    ("altitude", CoreQuantity::Altitude, "along the radius vector, m"),
-    ("speed", CoreQuantity::Speed, "relative to the rotating planet, m/s"),
-    (
-        "mach",
-        CoreQuantity::Mach,
-        "the speed relative to the air over that of sound; needs an atmosphere that has a speed of sound",
-    ),
-    ("dynamic_pressure", CoreQuantity::DynamicPressure, "½ρV² of the speed relative to the air, Pa"),
-    ("load_factor", CoreQuantity::LoadFactor, "lift, drag and thrust over mass and 9.80665 m/s²"),
-    ("flight_path_angle", CoreQuantity::FlightPathAngle, "of the velocity relative to the planet"),
-    ("mass", CoreQuantity::Mass, "of the vehicle, kg"),
-    ("air_speed", CoreQuantity::AirSpeed, "relative to the air, m/s"),
-    ("inertial_speed", CoreQuantity::InertialSpeed, "relative to inertial space, m/s"),
-    (
-        "specific_energy",
-        CoreQuantity::SpecificEnergy,
-        "half the squared inertial speed and the potential of gravity, J/kg",
-    ),
-    (
-        "apoapsis_altitude",
-        CoreQuantity::ApoapsisAltitude,
-        "of the osculating orbit, above the equatorial radius, m; 1e13 m where it is not bound",
-    ),
-    ("periapsis_altitude", CoreQuantity::PeriapsisAltitude, "of the osculating orbit, above the equatorial radius, m"),
-    ("inclination", CoreQuantity::Inclination, "of the osculating orbit to the equator"),
-    ("heat_flux", CoreQuantity::HeatFlux, "into the stagnation point, W/m²; needs heating"),
-    ("heat_load", CoreQuantity::HeatLoad, "into the stagnation point since the start, J/m²; needs heating"),
-    (
-        "wall_temperature",
-        CoreQuantity::WallTemperature,
-        "at which the wall radiates as much as it gets, K; needs heating",
-    ),
-    (
-        "downrange",
-        CoreQuantity::Downrange,
-        "along the great circle of the initial heading, m; needs an initial heading",
-    ),
-    ("ground_range", CoreQuantity::GroundRange, "great-circle distance from the initial ground point, m"),
-    ("deceleration", CoreQuantity::Deceleration, "-dV/dt of the speed relative to the planet, m/s²"),
-    ("density", CoreQuantity::Density, "of the air, kg/m³"),
-];
-
-/// The schema of a name in [`QUANTITIES`].
-pub struct Quantity;
-
-impl PartialSchema for Quantity {
-    fn schema() -> RefOr<Schema> {
-        let meanings: Vec<_> = QUANTITIES.iter().map(|(name, _, meaning)| format!("`{name}`: {meaning}")).collect();
-        ObjectBuilder::new()
-            .schema_type(Type::String)
-            .enum_values(Some(QUANTITIES.map(|(name, ..)| name)))
-            .description(Some(format!("What may pass a value. {}.", meanings.join(". "))))
-            .into()
-    }
-}
-
-impl ToSchema for Quantity {}
-
-/// What an event changes, from its instant on; what is left out stays as it is.
-#[derive(Clone, Debug, Default, ToSchema)]
+/// What an event changes.
+#[derive(Clone, Debug, Default)]
 pub struct Effect {
-    /// kg. A ballistic coefficient changes with it: the drag area stays.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0)]
-    pub mass: Option<f64>,
-    /// m². Not beside ballistic aerodynamics, nor where the vehicle has them and no event gives others.
-    #[schema(required = false, value_type = f64, minimum = 0)]
-    pub reference_area: Option<f64>,
-    /// Lift and drag.
-    #[schema(required = false, value_type = names::Aerodynamics)]
-    pub aerodynamics: Option<Aerodynamics>,
-    /// An impulsive change of velocity. It takes no propellant: give the mass after it as `mass`.
-    #[schema(required = false, value_type = DeltaV)]
-    pub delta_v: Option<DeltaV>,
-    /// A constant thrust, which is switched on, or `"off"`.
-    #[schema(required = false, value_type = ThrustCommand)]
-    pub thrust: Option<ThrustCommand>,
-    /// A parachute that is deployed.
-    #[schema(required = false, value_type = Parachute)]
-    pub deploy: Option<Parachute>,
-    /// The names of parachutes that are cut off, before another is deployed. One that is not deployed then stays as it is, with a warning.
-    #[schema(required = false, max_items = 1000)]
-    pub release: Vec<String>,
+    /// The same for the core, but for the parachutes that are cut off, and with inertial directions by the axes of their frame.
+    pub core: CoreEffect,
+    /// The name of the parachute that is deployed.
+    pub deployed: Option<String>,
+    /// The names of the parachutes that are cut off.
+    pub released: Vec<String>,
 }
 
-/// A parachute, whose drag adds to that of the vehicle, along the velocity relative to the air: of several, all add up.
-///
-/// Its drag area grows as `drag_area` (t/`inflation_time`)² while it fills: T. W. Knacke, Parachute Recovery Systems Design Manual,
-/// NWC TP 6575, 1991, chapter 5, for canopies of solid cloth.
-#[derive(Clone, Debug, ToSchema)]
-pub struct Parachute {
-    /// By which `release` calls it; no two parachutes have the same, since each is deployed once.
-    pub name: String,
-    /// The drag coefficient times the area of the full canopy, m².
-    #[schema(minimum = 0, maximum = 1e9)]
-    pub drag_area: f64,
-    /// How long it fills, s; 0: it opens at once.
-    #[schema(minimum = 0, maximum = 1e9)]
-    pub inflation_time: f64,
-    /// From the event until it begins to fill, s.
-    #[schema(required = false, minimum = 0, maximum = 1e9, default = 0)]
-    pub delay: f64,
-}
+/// The quantities of conditions.
+pub static QUANTITIES: Words<Quantity> = Words {
+    name: "Quantity",
+    doc: "What may pass a value.",
+    words: &[
+        word("time", Quantity::Time, "Time, s").doc("Since the start, s."),
+        word("altitude", Quantity::Altitude, "Altitude, m").doc("Along the radius vector, m."),
+        word("speed", Quantity::Speed, "Speed, m/s").doc("Relative to the rotating planet, m/s."),
+        word("mach", Quantity::Mach, "Mach number")
+            .doc("The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound."),
+        word("dynamic_pressure", Quantity::DynamicPressure, "Dynamic pressure, Pa")
+            .doc("½ρV² of the speed relative to the air, Pa."),
+        word("load_factor", Quantity::LoadFactor, "Load factor, g")
+            .doc("Lift, drag and thrust over mass and 9.80665 m/s²."),
+        word("flight_path_angle", Quantity::FlightPathAngle, "Flight-path angle")
+            .doc("Of the velocity relative to the planet."),
+        word("mass", Quantity::Mass, "Mass, kg").doc("Of the vehicle, kg."),
+        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").doc("Relative to the air, m/s."),
+        word("inertial_speed", Quantity::InertialSpeed, "Inertial speed, m/s").doc("Relative to inertial space, m/s."),
+        word("specific_energy", Quantity::SpecificEnergy, "Specific energy, J/kg")
+            .doc("Half the squared inertial speed and the potential of gravity, J/kg."),
+        word("apoapsis_altitude", Quantity::ApoapsisAltitude, "Apoapsis altitude, m")
+            .doc("Of the osculating orbit, above the equatorial radius, m; 1e13 m where it is not bound."),
+        word("periapsis_altitude", Quantity::PeriapsisAltitude, "Periapsis altitude, m")
+            .doc("Of the osculating orbit, above the equatorial radius, m."),
+        word("inclination", Quantity::Inclination, "Inclination").doc("Of the osculating orbit to the equator."),
+        word("heat_flux", Quantity::HeatFlux, "Heat flux, W/m²").doc("Into the stagnation point, W/m²; needs heating."),
+        word("heat_load", Quantity::HeatLoad, "Heat load, J/m²")
+            .doc("Into the stagnation point since the start, J/m²; needs heating."),
+        word("wall_temperature", Quantity::WallTemperature, "Wall temperature, K")
+            .doc("At which the wall radiates as much as it gets, K; needs heating."),
+        word("downrange", Quantity::Downrange, "Downrange, m")
+            .doc("Along the great circle of the initial heading, m; needs an initial heading."),
+        word("ground_range", Quantity::GroundRange, "Ground range, m")
+            .doc("Great-circle distance from the initial ground point, m."),
+        word("deceleration", Quantity::Deceleration, "Deceleration, m/s²")
+            .doc("-dV/dt of the speed relative to the planet, m/s²."),
+        word("density", Quantity::Density, "Density, kg/m³").doc("Of the air, kg/m³."),
+    ],
+};
 
-/// A change of velocity at an instant.
-#[derive(Clone, Copy, Debug, ToSchema)]
-pub struct DeltaV {
-    /// Where to.
-    pub along: Along,
-    /// m/s; negative against the direction, as a deorbit burn along the velocity is.
-    #[schema(minimum = -1e6, maximum = 1e6)]
-    pub value: f64,
-}
-
-/// A constant thrust, switched on in place of one that burns. It ends where it is switched off, or where its propellant is spent.
-///
-/// A thrust against the velocity that is greater than what else moves the vehicle brings it to rest, where it has no direction: switch it
-/// off before, or end the flight, for example where the speed falls through 0.
-#[derive(Clone, Copy, Debug, ToSchema)]
-pub struct Thrust {
-    /// Where to, at every instant.
-    pub along: Along,
-    /// N; negative against the direction, as a retro burn along the velocity is.
-    #[schema(minimum = -1e12, maximum = 1e12)]
-    pub value: f64,
-    /// s: the mass falls by |value|/(9.80665 m/s² `specific_impulse`) a second; without it, the mass stays.
-    #[schema(required = false, value_type = f64, minimum = 1e-3, maximum = 1e9)]
-    pub specific_impulse: Option<f64>,
-    /// How much there is to burn, kg; without it, the thrust burns until it is switched off. Only with a `specific_impulse`.
-    #[schema(required = false, value_type = f64, exclusive_minimum = 0)]
-    pub propellant: Option<f64>,
-}
-
-/// A direction: one that moves with the vehicle, or one that stays in inertial space.
-#[derive(Clone, Copy, Debug)]
-pub enum Along {
-    /// It moves with the vehicle.
-    Axis(Axis),
-    /// It stays in inertial space.
-    Inertial(InertialDirection),
-}
-
-/// A direction that stays in inertial space while the planet turns.
-///
-/// Its components are those of the inertial frame of the initial state: the `frame` of `eci` vectors and of orbital elements, and for other
-/// states that of date, from which the planet is turned by the `sidereal_time`, the `sidereal_angle` or the `epoch`.
-#[derive(Clone, Copy, Debug, ToSchema)]
-pub struct InertialDirection {
-    /// The frame.
-    pub frame: &'static str,
-    /// [x, y, z], of any length but 0.
-    pub direction: [f64; 3],
-    /// The same, for the core, on the axes of its frame.
-    #[schema(ignore)]
-    pub core: CoreAxis,
-}
-
-/// A direction that moves with the vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Axis {
-    /// Along the velocity relative to the rotating planet.
-    Velocity,
-    /// Away from the planet's centre.
-    Radial,
-    /// Across both, level, to the left of the flight direction.
-    Normal,
-    /// Along the level part of the velocity relative to the rotating planet.
-    Horizontal,
-}
-
-impl PartialSchema for Along {
-    fn schema() -> RefOr<Schema> {
-        let reference = |name| RefBuilder::new().ref_location_from_schema_name(name);
-        let description = "Where to: by a word, or a direction that stays in inertial space.";
-        let along = OneOfBuilder::new().item(reference(Axis::name())).item(reference(InertialDirection::name()));
-        along.description(Some(description)).into()
+/// The unit of a quantity that is no angle.
+fn unit(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Time => "s",
+        Quantity::Altitude
+        | Quantity::ApoapsisAltitude
+        | Quantity::PeriapsisAltitude
+        | Quantity::Downrange
+        | Quantity::GroundRange => "m",
+        Quantity::Speed | Quantity::AirSpeed | Quantity::InertialSpeed => "m/s",
+        Quantity::DynamicPressure => "Pa",
+        Quantity::Mass => "kg",
+        Quantity::SpecificEnergy => "J/kg",
+        Quantity::HeatFlux => "W/m²",
+        Quantity::HeatLoad => "J/m²",
+        Quantity::WallTemperature => "K",
+        Quantity::Deceleration => "m/s²",
+        Quantity::Density => "kg/m³",
+        Quantity::Mach | Quantity::LoadFactor | Quantity::FlightPathAngle | Quantity::Inclination => "",
     }
 }
 
-impl ToSchema for Along {
-    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
-        schemas.push((Axis::name().into(), Axis::schema()));
-        schemas.push((InertialDirection::name().into(), InertialDirection::schema()));
+/// An event.
+pub(super) fn event(object: &mut Object) -> Option<Event> {
+    object.named(
+        "Event",
+        "Something that happens once: at the first instant at which its condition is met, and never again. Events of one instant happen in the order \
+         of their list, each on what the ones before it have made.",
+    );
+    let name = object.field("name", "Name").doc("Given back in the answer.").optional().text();
+    let when = object.field("when", "When").doc("When.").object(condition);
+    let then = object
+        .field("then", "Then")
+        .doc("What it changes; without anything it is a mark, whose state the answer tells.")
+        .default(json!({}))
+        .object(effect);
+    Some(Event { name, when: when?, then: then? })
+}
+
+/// A condition.
+pub(super) fn condition(object: &mut Object) -> Option<Condition> {
+    object.named(
+        "Condition",
+        "A quantity passes a value, downwards or upwards, or so much time has passed since another event.\n\nA condition on a quantity is met at the \
+         first instant at which the quantity, having been on the near side, is on the value or beyond, whether it moved there or jumped, as the load \
+         factor does where a parachute opens. A quantity that begins on the value meets it at once if it moves on to the far side, however slowly; \
+         one that begins beyond must come back first.",
+    );
+    object.alternatives(&[("quantity", &crossing), ("event", &after)])
+}
+
+fn crossing(object: &mut Object) -> Option<Condition> {
+    let quantity =
+        object.field("quantity", "Quantity").doc("Which quantity passes the value.").optional().word(&QUANTITIES);
+    let mut value = |name, title, doc| {
+        let field = object.field(name, title).doc(doc).optional();
+        match quantity {
+            Some(quantity) if quantity.is_angle() => field.angle(quantity.bound()),
+            Some(quantity) => field.unit(unit(quantity)).number(quantity.bound()),
+            // Which bound the value has is not known.
+            None => field.number(Bound::FINITE),
+        }
+    };
+    let falling = value(
+        "falls_through",
+        "falls through",
+        "The value, from above, in the unit of the quantity; an angle in `angle_unit`. Not for time.",
+    );
+    let rising = value(
+        "rises_through",
+        "rises through",
+        "The value, from below, in the unit of the quantity; an angle in `angle_unit`.",
+    );
+    object.exactly_one(&["falls_through", "rises_through"]);
+    object.condition(|| json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}}));
+    for word in QUANTITIES.words {
+        object.condition(|| {
+            let bound = word.meaning.bound();
+            let bounds = bounds(if word.meaning.is_angle() { widened(bound) } else { bound });
+            let both = json!({"properties": {"falls_through": bounds, "rises_through": bounds}});
+            json!({"if": is("quantity", word.word), "then": both})
+        });
     }
+    let falling = falling.map(|value| (value, Direction::Falling));
+    let (value, direction) = falling.or(rising.map(|value| (value, Direction::Rising)))?;
+    Some(Condition::Crossing(Crossing { quantity: quantity?, value, direction }))
+}
+
+fn after(object: &mut Object) -> Option<Condition> {
+    let event = object
+        .field("event", "or after the event")
+        .doc("The name of another event, which happens before.")
+        .optional()
+        .text();
+    let delay = object
+        .field("delay", "Delay after it")
+        .doc("Seconds after that event.")
+        .unit("s")
+        .default(0.0)
+        .number(Bound::TIME);
+    Some(Condition::After(event?, delay?))
+}
+
+/// What an event changes.
+#[expect(clippy::unnecessary_wraps, reason = "the descriptions of objects have one type")]
+fn effect(object: &mut Object) -> Option<Effect> {
+    object.named("Effect", "What an event changes, from its instant on; what is left out stays as it is.");
+    let mass = object
+        .field("mass", "Mass becomes")
+        .doc("kg. A ballistic coefficient changes with it: the drag area stays.")
+        .unit("kg")
+        .optional()
+        .number(Bound::POSITIVE);
+    let reference_area = object.only_unless("aerodynamics/type", "ballistic", |object| {
+        object
+            .field("reference_area", "Reference area becomes")
+            .doc("m². Not beside ballistic aerodynamics, nor where the vehicle has them and no event gives others.")
+            .unit("m²")
+            .optional()
+            .number(Bound::NON_NEGATIVE)
+    });
+    let aerodynamics =
+        object.field("aerodynamics", "Aerodynamics become").doc("Lift and drag.").optional().object(aerodynamics);
+    let impulse = object
+        .field("delta_v", "Impulse")
+        .doc("An impulsive change of velocity. It takes no propellant: give the mass after it as `mass`.")
+        .optional()
+        .object(impulse);
+    let engine = object
+        .field("thrust", "Thrust")
+        .doc("A constant thrust, which is switched on, or `\"off\"`.")
+        .optional()
+        .word_or(&THRUST_COMMAND, &OFF, |object| thrust(object).map(Engine::On));
+    let parachute =
+        object.field("deploy", "Parachute").doc("A parachute that is deployed.").optional().object(parachute);
+    let released = object
+        .field("release", "Release")
+        .doc("The names of parachutes that are cut off, before another is deployed. One that is not deployed then stays as it is, with a warning.")
+        .optional()
+        .texts(MOST_EVENTS);
+    let (deployed, deploy) = parachute.unzip();
+    let core = CoreEffect { mass, reference_area, aerodynamics, impulse, engine, release: Vec::new(), deploy };
+    Some(Effect { core, deployed, released: released.unwrap_or_default() })
+}
+
+fn impulse(object: &mut Object) -> Option<Impulse> {
+    object.named("DeltaV", "A change of velocity at an instant.");
+    let along = along(object, "Where to.");
+    let speed_change = object
+        .field("value", "Change of speed")
+        .doc("m/s; negative against the direction, as a deorbit burn along the velocity is.")
+        .unit("m/s")
+        .number(Bound::VELOCITY);
+    Some(Impulse { along: along?, speed_change: speed_change? })
 }
 
 /// What becomes of the thrust.
-#[derive(Clone, Copy, Debug)]
-pub enum ThrustCommand {
-    /// It is switched on.
-    On(Thrust),
-    /// It is switched off.
-    Off,
+const THRUST_COMMAND: Union = Union {
+    name: "ThrustCommand",
+    doc: "What becomes of the thrust: another one, or `\"off\"`.",
+    simple: "",
+    object: "",
+};
+
+const OFF: Words<Engine> =
+    Words { name: "", doc: "The thrust is switched off.", words: &[word("off", Engine::Off, "")] };
+
+fn thrust(object: &mut Object) -> Option<Thrust> {
+    object.named(
+        "Thrust",
+        "A constant thrust, switched on in place of one that burns. It ends where it is switched off, or where its propellant is spent.\n\nA thrust \
+         against the velocity that is greater than what else moves the vehicle brings it to rest, where it has no direction: switch it off before, \
+         or end the flight, for example where the speed falls through 0.",
+    );
+    let along = along(object, "Where to, at every instant.");
+    let force = object
+        .field("value", "Thrust")
+        .doc("N; negative against the direction, as a retro burn along the velocity is.")
+        .unit("N")
+        .number(Bound::FORCE);
+    let burns = object.has("specific_impulse");
+    let specific_impulse = object
+        .field("specific_impulse", "Specific impulse")
+        .doc("s: the mass falls by |value|/(9.80665 m/s² `specific_impulse`) a second; without it, the mass stays.")
+        .unit("s")
+        .optional()
+        .number(Bound::SPECIFIC_IMPULSE);
+    let propellant = object
+        .field("propellant", "Propellant")
+        .doc("How much there is to burn, kg; without it, the thrust burns until it is switched off. Only with a `specific_impulse`.")
+        .unit("kg")
+        .optional()
+        .number(Bound::POSITIVE);
+    object.condition(|| json!({"dependentRequired": {"propellant": ["specific_impulse"]}}));
+    if propellant.is_some() && !burns {
+        object.fault_of("propellant", "must be left out: without specific_impulse the thrust burns none");
+    }
+    Some(Thrust { along: along?, force: force?, specific_impulse, propellant })
 }
 
-impl PartialSchema for ThrustCommand {
-    fn schema() -> RefOr<Schema> {
-        let off = ObjectBuilder::new()
-            .schema_type(Type::String)
-            .enum_values(Some(["off"]))
-            .description(Some("The thrust is switched off."));
-        let on = RefBuilder::new().ref_location_from_schema_name(Thrust::name());
-        let description = "What becomes of the thrust: another one, or `\"off\"`.";
-        OneOfBuilder::new().item(on).item(off).description(Some(description)).into()
-    }
+/// A direction that moves with the vehicle, or one that stays in inertial space.
+const ALONG: Union = Union {
+    name: "Along",
+    doc: "Where to: by a word, or a direction that stays in inertial space.",
+    simple: "",
+    object: "",
+};
+
+const AXES: Words<ThrustAxis> = Words {
+    name: "Axis",
+    doc: "A direction that moves with the vehicle.",
+    words: &[
+        word("velocity", ThrustAxis::Velocity, "the velocity")
+            .doc("Along the velocity relative to the rotating planet."),
+        word("radial", ThrustAxis::Radial, "the radius, outwards").doc("Away from the planet's centre."),
+        word("normal", ThrustAxis::Normal, "the normal, left")
+            .doc("Across both, level, to the left of the flight direction."),
+        word("horizontal", ThrustAxis::Horizontal, "the velocity’s level part")
+            .doc("Along the level part of the velocity relative to the rotating planet."),
+    ],
+};
+
+fn along(object: &mut Object, doc: &'static str) -> Option<ThrustAxis> {
+    object.field("along", "Along").doc(doc).word_or(&ALONG, &AXES, inertial_direction)
 }
 
-impl ToSchema for ThrustCommand {
-    fn schemas(schemas: &mut Vec<(String, RefOr<Schema>)>) {
-        schemas.push((Thrust::name().into(), Thrust::schema()));
-        Thrust::schemas(schemas);
+fn inertial_direction(object: &mut Object) -> Option<ThrustAxis> {
+    object.named(
+        "InertialDirection",
+        "A direction that stays in inertial space while the planet turns.\n\nIts components are those of the inertial frame of the initial state: \
+         the `frame` of `eci` vectors and of orbital elements, and for other states that of date, from which the planet is turned by the \
+         `sidereal_time`, the `sidereal_angle` or the `epoch`.",
+    );
+    object.field("frame", "Frame").doc("The frame.").constant("inertial");
+    let direction = object.field("direction", "Direction").doc("[x, y, z], of any length but 0.").vector(Bound::FINITE);
+    object.refine("direction", || json!({"contains": {"not": {"const": 0}}}));
+    let axis = ThrustAxis::inertial(direction?);
+    if axis.is_none() {
+        object.fault_of("direction", "must not be [0, 0, 0], which has no direction");
     }
+    axis
+}
+
+/// A parachute and its name.
+fn parachute(object: &mut Object) -> Option<(String, Parachute)> {
+    object.named(
+        "Parachute",
+        "A parachute, whose drag adds to that of the vehicle, along the velocity relative to the air: of several, all add up.\n\nIts drag area grows \
+         as `drag_area` (t/`inflation_time`)² while it fills: T. W. Knacke, Parachute Recovery Systems Design Manual, NWC TP 6575, 1991, chapter 5, \
+         for canopies of solid cloth.",
+    );
+    let name = object
+        .field("name", "Name")
+        .doc("By which `release` calls it; no two parachutes have the same, since each is deployed once.")
+        .text();
+    let drag_area = object
+        .field("drag_area", "Drag area")
+        .doc("The drag coefficient times the area of the full canopy, m².")
+        .unit("m²")
+        .number(Bound::DRAG_AREA);
+    let inflation_time = object
+        .field("inflation_time", "Inflation time")
+        .doc("How long it fills, s; 0: it opens at once.")
+        .unit("s")
+        .number(Bound::TIME);
+    let delay = object
+        .field("delay", "Delay")
+        .doc("From the event until it begins to fill, s.")
+        .unit("s")
+        .default(0.0)
+        .number(Bound::TIME);
+    Some((name?, Parachute { drag_area: drag_area?, inflation_time: inflation_time?, delay: delay? }))
 }
 
 impl Event {
-    pub(super) fn read(object: &mut Object) -> Option<Self> {
-        let name = object.optional_string("name");
-        let when = object.object("when", Condition::read);
-        let then = object.object_or("then", json!({}), Effect::read);
-        Some(Self { name, when: when?, then: then? })
-    }
-
-    pub(super) fn to_core(&self, unit: AngleUnit, events: &[Self], among: &Among) -> CoreEvent {
-        CoreEvent { when: self.when.to_core(unit, events), then: self.then.to_core(among) }
+    pub(super) fn to_core(&self, events: &[Self], surroundings: &Surroundings) -> CoreEvent {
+        let parachute = |name: &String| surroundings.parachutes.get(name.as_str()).copied();
+        let turned = |axis: ThrustAxis| axis.rotated_by(&surroundings.to_planet);
+        let mut then = self.then.core.clone();
+        then.release = self.then.released.iter().filter_map(parachute).collect();
+        if let Some(impulse) = &mut then.impulse {
+            impulse.along = turned(impulse.along);
+        }
+        if let Some(Engine::On(thrust)) = &mut then.engine {
+            thrust.along = turned(thrust.along);
+        }
+        CoreEvent { when: self.when.to_core(events), then }
     }
 
     /// Whether it may change the mass.
     pub fn changes_mass(&self) -> bool {
-        let burns =
-            |thrust: &ThrustCommand| matches!(thrust, ThrustCommand::On(thrust) if thrust.specific_impulse.is_some());
-        self.then.mass.is_some() || self.then.thrust.as_ref().is_some_and(burns)
+        let CoreEffect { mass, engine, .. } = &self.then.core;
+        mass.is_some() || matches!(engine, Some(Engine::On(thrust)) if thrust.specific_impulse.is_some())
+    }
+
+    /// Whether it switches a thrust on or off.
+    pub fn changes_thrust(&self) -> bool {
+        self.then.core.engine.is_some()
     }
 
     /// Whether it pushes the vehicle along a direction that stays in inertial space.
     fn is_inertial(&self) -> bool {
-        let along = [
-            self.then.delta_v.map(|delta_v| delta_v.along),
-            self.then.thrust.and_then(|thrust| match thrust {
-                ThrustCommand::On(thrust) => Some(thrust.along),
-                ThrustCommand::Off => None,
-            }),
-        ];
-        along.into_iter().flatten().any(|along| matches!(along, Along::Inertial(_)))
+        let is_inertial = |axis: ThrustAxis| matches!(axis, ThrustAxis::Inertial(_));
+        let CoreEffect { impulse, engine, .. } = &self.then.core;
+        impulse.is_some_and(|impulse| is_inertial(impulse.along))
+            || matches!(engine, Some(Engine::On(thrust)) if is_inertial(thrust.along))
     }
 
     /// Inertial directions on a planet whose angle nobody knows: an epoch says nothing about it, and the state does not give it.
@@ -327,7 +415,7 @@ impl Event {
         let mut faults = Vec::new();
         let mut deployed: HashMap<&str, usize> = HashMap::new();
         for (index, Self { then, .. }) in events.iter().enumerate() {
-            let Some(Parachute { name, .. }) = &then.deploy else { continue };
+            let Some(name) = &then.deployed else { continue };
             match deployed.entry(name) {
                 Entry::Vacant(entry) => _ = entry.insert(index),
                 Entry::Occupied(first) => {
@@ -341,7 +429,7 @@ impl Event {
         }
         for (index, Self { then, .. }) in events.iter().enumerate() {
             for (place, name) in
-                then.release.iter().enumerate().filter(|(_, name)| !deployed.contains_key(name.as_str()))
+                then.released.iter().enumerate().filter(|(_, name)| !deployed.contains_key(name.as_str()))
             {
                 let got = quoted(name);
                 let detail = format!("must be the name of a parachute that an event deploys, got {got}");
@@ -360,13 +448,12 @@ impl Event {
             return Vec::new();
         }
         let by_area = |Self { then, .. }: &Self| {
-            then.aerodynamics
-                .as_ref()
-                .is_some_and(|aerodynamics| !matches!(aerodynamics, Aerodynamics::Ballistic { .. }))
+            let aerodynamics = then.core.aerodynamics.as_ref();
+            aerodynamics.is_some_and(|aerodynamics| !matches!(aerodynamics, Aerodynamics::Ballistic { .. }))
         };
         let ever = events.iter().any(by_area);
         let fault = |(index, event): (usize, &Self)| {
-            let detail = match event.then.reference_area {
+            let detail = match event.then.core.reference_area {
                 None if by_area(event) => {
                     "is required: the ballistic vehicle has no area to which these coefficients could refer"
                 }
@@ -382,57 +469,21 @@ impl Event {
 }
 
 impl Condition {
-    pub(super) fn read(object: &mut Object) -> Option<Self> {
-        let Some(way) = object.exactly_one(&["quantity", "event"]) else {
-            // Which of the others belong here is not known.
-            for name in ["falls_through", "rises_through", "delay"] {
-                object.has(name);
-            }
-            return None;
-        };
-        if way == "event" {
-            let event = object.optional_string("event");
-            let delay = object.number_or("delay", Bound::TIME, 0.0);
-            return Some(Self {
-                quantity: None,
-                falls_through: None,
-                rises_through: None,
-                event: Some(event?),
-                delay: Some(delay?),
-            });
-        }
-        let quantity = object.choice("quantity", &QUANTITIES.map(|(name, quantity, _)| (name, quantity)));
-        let way = object.exactly_one(&["falls_through", "rises_through"])?;
-        let quantity = quantity?;
-        let value = if quantity.is_angle() {
-            object.angle(way, quantity.bound())
-        } else {
-            object.number(way, quantity.bound())
-        };
-        let (falls_through, rises_through) =
-            if way == "falls_through" { (Some(value?), None) } else { (None, Some(value?)) };
-        Some(Self { quantity: Some(quantity), falls_through, rises_through, event: None, delay: None })
-    }
-
     /// The core's trigger; one that waits for an event of no name in the list waits for one beyond its end.
-    pub(super) fn to_core(&self, unit: AngleUnit, events: &[Event]) -> Trigger {
-        let Some(quantity) = self.quantity else {
-            let named = |event: &Event| event.name.is_some() && event.name == self.event;
-            let event = events.iter().position(named).unwrap_or(events.len());
-            return Trigger::After { event, delay: self.delay.unwrap_or_default() };
-        };
-        let (value, direction) = match (self.falls_through, self.rises_through) {
-            (Some(value), _) => (value, Direction::Falling),
-            (None, value) => (value.unwrap_or_default(), Direction::Rising),
-        };
-        let value = if quantity.is_angle() { unit.to_radians(value) } else { value };
-        CoreCondition { quantity, value, direction }.into()
+    pub(super) fn to_core(&self, events: &[Event]) -> Trigger {
+        match self {
+            Self::Crossing(crossing) => (*crossing).into(),
+            Self::After(name, delay) => {
+                let event = events.iter().position(|event| event.name.as_ref() == Some(name));
+                Trigger::After { event: event.unwrap_or(events.len()), delay: *delay }
+            }
+        }
     }
 
     /// The name of an event that is waited for, which must be that of one event alone; `place` is that of the condition.
     pub(super) fn name_fault(&self, place: &str, events: &[Event]) -> Option<Fault> {
-        let name = self.event.as_deref()?;
-        let named = events.iter().filter(|event| event.name.as_deref() == Some(name)).count();
+        let Self::After(name, _) = self else { return None };
+        let named = events.iter().filter(|event| event.name.as_ref() == Some(name)).count();
         let detail = match named {
             0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
             1 => return None,
@@ -442,152 +493,18 @@ impl Condition {
     }
 }
 
-impl Effect {
-    fn read(object: &mut Object) -> Option<Self> {
-        let mass = object.optional_number("mass", Bound::POSITIVE);
-        let by_area = !object.is_of_kind("aerodynamics", "ballistic");
-        let reference_area = if by_area { object.optional_number("reference_area", Bound::NON_NEGATIVE) } else { None };
-        let aerodynamics = object.optional_object("aerodynamics", |object| reading(object, aerodynamics));
-        let delta_v = object.optional_object("delta_v", DeltaV::read);
-        let off = ("off", ThrustCommand::Off);
-        let on = |object: &mut Object| Thrust::read(object).map(ThrustCommand::On);
-        let thrust = if object.has("thrust") { object.word_or_object("thrust", off, on).map(Some) } else { Some(None) };
-        let deploy = object.optional_object("deploy", Parachute::read);
-        let release = object.optional_strings("release", MOST_EVENTS);
-        Some(Self {
-            mass,
-            reference_area,
-            aerodynamics: aerodynamics?,
-            delta_v: delta_v?,
-            thrust: thrust?,
-            deploy: deploy?,
-            release: release?,
-        })
-    }
-
-    fn to_core(&self, among: &Among) -> CoreEffect {
-        let parachute = |name: &String| among.parachutes.get(name.as_str()).copied();
-        CoreEffect {
-            mass: self.mass,
-            reference_area: self.reference_area,
-            aerodynamics: self.aerodynamics.clone(),
-            impulse: self
-                .delta_v
-                .map(|DeltaV { along, value }| Impulse { along: along.to_core(among), speed_change: value }),
-            engine: self.thrust.map(|thrust| thrust.to_core(among)),
-            release: self.release.iter().filter_map(parachute).collect(),
-            deploy: self.deploy.as_ref().map(Parachute::to_core),
-        }
-    }
-}
-
-impl DeltaV {
-    fn read(object: &mut Object) -> Option<Self> {
-        let along = Along::read(object);
-        let value = object.number("value", Bound::VELOCITY);
-        Some(Self { along: along?, value: value? })
-    }
-}
-
-impl Thrust {
-    fn read(object: &mut Object) -> Option<Self> {
-        let along = Along::read(object);
-        let value = object.number("value", Bound::FORCE);
-        let burns = object.has("specific_impulse");
-        let specific_impulse = object.optional_number("specific_impulse", Bound::SPECIFIC_IMPULSE);
-        let propellant = object.optional_number("propellant", Bound::POSITIVE);
-        if propellant.is_some() && !burns {
-            object
-                .fault_of("propellant", "must be left out: without specific_impulse the thrust burns none".to_owned());
-        }
-        Some(Self { along: along?, value: value?, specific_impulse, propellant })
-    }
-}
-
-impl ThrustCommand {
-    fn to_core(self, among: &Among) -> Engine {
-        match self {
-            Self::On(Thrust { along, value, specific_impulse, propellant }) => {
-                Engine::On(CoreThrust { along: along.to_core(among), force: value, specific_impulse, propellant })
-            }
-            Self::Off => Engine::Off,
-        }
-    }
-}
-
-/// What an event of a request refers to outside itself.
-pub(super) struct Among<'a> {
+/// What events refer to outside themselves.
+pub(super) struct Surroundings<'a> {
     /// The numbers of the events that deploy parachutes, by the names of these.
     parachutes: HashMap<&'a str, usize>,
     /// Takes components in the inertial frame to planet-fixed ones at t = 0.
     to_planet: Rotation,
 }
 
-impl<'a> Among<'a> {
+impl<'a> Surroundings<'a> {
     /// These events, with the rotation that takes components in the inertial frame to planet-fixed ones at t = 0.
     pub(super) fn new(events: &'a [Event], to_planet: Rotation) -> Self {
-        let deploys = |(index, event): (usize, &'a Event)| Some((event.then.deploy.as_ref()?.name.as_str(), index));
+        let deploys = |(index, event): (usize, &'a Event)| Some((event.then.deployed.as_deref()?, index));
         Self { parachutes: events.iter().enumerate().filter_map(deploys).collect(), to_planet }
-    }
-}
-
-impl Parachute {
-    fn read(object: &mut Object) -> Option<Self> {
-        let name = object.string("name");
-        let drag_area = object.number("drag_area", Bound::DRAG_AREA);
-        let inflation_time = object.number("inflation_time", Bound::TIME);
-        let delay = object.number_or("delay", Bound::TIME, 0.0);
-        Some(Self { name: name?, drag_area: drag_area?, inflation_time: inflation_time?, delay: delay? })
-    }
-
-    fn to_core(&self) -> CoreParachute {
-        let Self { drag_area, inflation_time, delay, .. } = *self;
-        CoreParachute { drag_area, inflation_time, delay }
-    }
-}
-
-impl Along {
-    fn read(object: &mut Object) -> Option<Self> {
-        let words = [
-            ("velocity", Axis::Velocity),
-            ("radial", Axis::Radial),
-            ("normal", Axis::Normal),
-            ("horizontal", Axis::Horizontal),
-        ];
-        if object.has_object("along") {
-            object.object("along", InertialDirection::read).map(Self::Inertial)
-        } else {
-            object.choice("along", &words).map(Self::Axis)
-        }
-    }
-
-    fn to_core(self, among: &Among) -> CoreAxis {
-        match self {
-            Self::Axis(axis) => axis.to_core(),
-            Self::Inertial(direction) => direction.core.rotated_by(&among.to_planet),
-        }
-    }
-}
-
-impl InertialDirection {
-    fn read(object: &mut Object) -> Option<Self> {
-        let frame = object.choice("frame", &[("inertial", "inertial")]);
-        let direction = object.vector("direction", Bound::FINITE);
-        let core = CoreAxis::inertial(direction?);
-        if core.is_none() {
-            object.fault_of("direction", "must not be [0, 0, 0], which has no direction".to_owned());
-        }
-        Some(Self { frame: frame?, direction: direction?, core: core? })
-    }
-}
-
-impl Axis {
-    fn to_core(self) -> CoreAxis {
-        match self {
-            Self::Velocity => CoreAxis::Velocity,
-            Self::Radial => CoreAxis::Radial,
-            Self::Normal => CoreAxis::Normal,
-            Self::Horizontal => CoreAxis::Horizontal,
-        }
     }
 }

@@ -1,21 +1,15 @@
 //! Reads a JSON tree field by field, notes every fault with its pointer, and fills in defaults.
 
-use std::ops::RangeInclusive;
-
-use reentry::interpolation::TableError;
 use reentry::number_text::apart;
 use reentry::scenario::Bound;
-use serde::Serialize;
-use serde_json::{Map, Number, Value, json};
-use utoipa::ToSchema;
+use serde_json::{Map, Number, Value};
 
 use super::AngleUnit;
 use super::schema::ANGLE;
 use super::shown::{quoted, shown};
 
 /// A number for all entries of a table, or one for each.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum NumberOrList {
     /// For all.
     Number(f64),
@@ -115,8 +109,18 @@ struct Context {
     turns: bool,
 }
 
-/// For descriptions that are still to come.
-pub type Object<'a> = ObjectReader<'a>;
+impl Context {
+    fn note(&mut self, pointer: String, detail: String) {
+        if !self.has_enough() {
+            self.faults.push(Fault { pointer, detail });
+        }
+    }
+
+    /// Whether further faults need not be looked for.
+    fn has_enough(&self) -> bool {
+        self.faults.len() > MOST_FAULTS
+    }
+}
 
 /// An object of the request, being read. Every method that finds a fault notes it and returns `None`.
 pub struct ObjectReader<'a> {
@@ -144,19 +148,6 @@ fn object<T>(
     result
 }
 
-impl Context {
-    fn note(&mut self, pointer: String, detail: String) {
-        if !self.has_enough() {
-            self.faults.push(Fault { pointer, detail });
-        }
-    }
-
-    /// Whether further faults need not be looked for.
-    fn has_enough(&self) -> bool {
-        self.faults.len() > MOST_FAULTS
-    }
-}
-
 impl ObjectReader<'_> {
     /// Notes a fault of this object as a whole.
     pub fn fault<T>(&mut self, detail: impl Into<String>) -> Option<T> {
@@ -164,15 +155,47 @@ impl ObjectReader<'_> {
         None
     }
 
-    /// What the core made of numbers that were read, or its own fault with them, noted of this object as a whole.
-    pub fn sound<T>(&mut self, made: Result<T, TableError>) -> Option<T> {
-        made.map_err(|error| self.fault::<T>(error.to_string())).ok()
+    /// Notes a fault of the field, or the element of a field, of the given relative pointer.
+    pub fn fault_of(&mut self, name: &str, detail: String) {
+        self.context.note(format!("{}/{name}", self.pointer), detail);
+    }
+
+    /// What a field holds, or its fault, noted.
+    fn check<T>(&mut self, name: &str, value: Result<T, String>) -> Option<T> {
+        value.map_err(|detail| self.fault_of(name, detail)).ok()
     }
 
     /// Whether the request gives the field.
     pub fn has(&mut self, name: &'static str) -> bool {
         self.known.push(name);
         self.map.contains_key(name)
+    }
+
+    /// Whether the field is given and an object.
+    pub fn has_object(&self, name: &str) -> bool {
+        self.map.get(name).is_some_and(Value::is_object)
+    }
+
+    /// Whether a field, given by its path through objects, is given and this word.
+    pub fn has_word(&self, path: &str, word: &str) -> bool {
+        let (name, rest) = path.split_once('/').map_or((path, None), |(name, rest)| (name, Some(rest)));
+        let value = self.map.get(name).and_then(|value| rest.map_or(Some(value), |rest| value.get(rest)));
+        value.is_some_and(|value| value == word)
+    }
+
+    /// Gives a field its default.
+    pub fn fill(&mut self, name: &'static str, default: Value) {
+        if !self.map.contains_key(name) {
+            self.map.insert(name.to_owned(), default);
+        }
+    }
+
+    /// A field that must be given.
+    pub fn required(&mut self, name: &'static str) -> Option<&Value> {
+        if !self.has(name) {
+            self.fault_of(name, "is required".to_owned());
+        }
+        self.map.get(name)
     }
 
     /// Notes a fault unless exactly one of the fields is given, which it returns.
@@ -185,111 +208,135 @@ impl ObjectReader<'_> {
         self.fault(format!("must have exactly one of {}, got {got}", names.join(", ")))
     }
 
-    /// A number that may be left out.
-    pub fn optional_number(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
-        if self.has(name) { self.number(name, bound) } else { None }
+    /// The unit of the request's angles, of which all are that are read after it; none where it is faulty.
+    pub fn set_angle_unit(&mut self, unit: Option<AngleUnit>) {
+        self.context.unit = unit;
     }
 
-    /// A number that must be given.
-    pub fn number(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
-        let number = bounded(self.required(name)?, bound);
-        self.check(name, number, Ok)
+    /// The unit of the request's angles, where it is sound.
+    pub fn angle_unit(&self) -> Option<AngleUnit> {
+        self.context.unit
     }
 
-    /// A number with a default.
-    pub fn number_or(&mut self, name: &'static str, bound: Bound, default: f64) -> Option<f64> {
-        self.fill(name, json!(default));
-        self.number(name, bound)
+    /// Whether an angle other than 0 was read so far.
+    pub fn turns(&self) -> bool {
+        self.context.turns
     }
 
-    /// An angle that must be given, in the request's unit; the bound is in radians.
+    /// Something that has its own reader.
+    pub fn value<T>(&mut self, name: &'static str, read: impl FnOnce(&Value) -> Result<T, String>) -> Option<T> {
+        let value = read(self.required(name)?);
+        self.check(name, value)
+    }
+
+    /// A number.
+    pub fn number(&mut self, name: &'static str, bound: Bound, unit: &'static str) -> Option<f64> {
+        let number = self.value(name, |value| bounded(value, bound))?;
+        self.list_number(name, bound, unit);
+        Some(number)
+    }
+
+    /// An angle in the request's unit; the bound is in radians.
     pub fn angle(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
         let unit = self.context.unit;
-        let angle = bounded_angle(self.required(name)?, bound, unit);
-        let angle = self.check(name, angle, Ok);
-        self.context.turns |= angle.is_some_and(|angle| angle != 0.0);
-        angle
+        let angle = self.value(name, |value| bounded_angle(value, bound, unit))?;
+        self.context.turns |= angle != 0.0;
+        self.list_number(name, bound, ANGLE);
+        Some(angle)
     }
 
-    /// An angle that may be left out.
-    pub fn optional_angle(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
-        if self.has(name) { self.angle(name, bound) } else { None }
+    /// An angle in radians; so is the bound.
+    pub fn radians(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
+        let angle = self.angle(name, bound)?;
+        self.context.unit.map(|unit| unit.to_radians(angle))
     }
 
-    /// An angle with a default.
-    pub fn angle_or(&mut self, name: &'static str, bound: Bound, default: f64) -> Option<f64> {
-        self.fill(name, json!(default));
-        self.angle(name, bound)
-    }
-
-    /// A whole number from `least` on.
-    pub fn whole_number(&mut self, name: &'static str, least: usize) -> Option<usize> {
-        self.whole_number_in(name, least..=usize::MAX, &format!("of at least {least}"))
-    }
-
-    /// A whole number between two, with a default.
-    pub fn whole_number_or(&mut self, name: &'static str, [least, most]: [usize; 2], default: usize) -> Option<usize> {
-        self.fill(name, json!(default));
-        self.whole_number_in(name, least..=most, &format!("between {least} and {most}"))
-    }
-
-    fn whole_number_in(&mut self, name: &'static str, range: RangeInclusive<usize>, which: &str) -> Option<usize> {
-        let value = self.required(name)?;
-        let kind = kind_of(value);
-        let shown = shown(value);
-        let whole = value.as_number().map(|number| whole(number).filter(|whole| range.contains(whole)));
-        self.check(name, whole.ok_or(format!("must be a whole number, got {kind}")), |whole| {
-            whole.ok_or(format!("must be a whole number {which}, got {shown}"))
+    /// A whole number between two.
+    pub fn whole_number(&mut self, name: &'static str, [least, most]: [usize; 2]) -> Option<usize> {
+        self.value(name, |value| {
+            let number = value.as_number().ok_or_else(|| format!("must be a whole number, got {}", kind_of(value)))?;
+            whole(number).filter(|number| (least..=most).contains(number)).ok_or_else(|| {
+                let which = match most {
+                    usize::MAX => format!("of at least {least}"),
+                    _ => format!("between {least} and {most}"),
+                };
+                format!("must be a whole number {which}, got {}", shown(value))
+            })
         })
     }
 
-    /// A vector of three numbers.
-    pub fn vector(&mut self, name: &'static str, bound: Bound) -> Option<[f64; 3]> {
-        if let Some(count) = self.map.get(name).and_then(Value::as_array).map(Vec::len)
-            && count != 3
-        {
-            self.fault_of(name, format!("must have 3 numbers, got {count}"));
-        }
-        self.numbers(name, bound)?.try_into().ok()
+    /// One of several words, by its index.
+    pub fn word(&mut self, name: &'static str, words: &[&str]) -> Option<usize> {
+        let expected = format!("must be one of {}", words.join(", "));
+        let chosen = match self.map.get(name) {
+            None => Err(format!("is required; it {expected}")),
+            Some(value) => chosen(value, words).map_err(|got| format!("{expected}, got {got}")),
+        };
+        self.known.push(name);
+        self.kind_unknown |= chosen.is_err() && (name == "type" || name == "model");
+        self.check(name, chosen)
     }
 
-    /// A list of numbers.
-    pub fn numbers(&mut self, name: &'static str, bound: Bound) -> Option<Vec<f64>> {
-        self.list(name, [0, usize::MAX], "numbers", |element| bounded(element, bound))
+    /// The only word that may stand in place of an object; its index is 0.
+    pub fn only_word(&mut self, name: &'static str, word: &str) -> Option<usize> {
+        self.value(name, |value| {
+            chosen(value, &[word]).map_err(|got| format!("must be {word:?} or an object, got {got}"))
+        })
     }
 
-    /// The numbers of a column of a table, so many at least and at most.
-    pub fn entries(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
-        self.list(name, counts, "numbers", |element| bounded(element, bound))
-    }
-
-    /// The numbers of a column of a table that may be left out.
-    pub fn optional_entries(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
-        if self.has(name) { self.entries(name, bound, counts) } else { None }
-    }
-
-    /// The angles of a column of a table, in the request's unit, one or more; the bound is in radians.
-    pub fn angles(&mut self, name: &'static str, bound: Bound, most: usize) -> Option<Vec<f64>> {
-        let unit = self.context.unit;
-        let angles = self.list(name, [1, most], "numbers", |element| bounded_angle(element, bound, unit));
-        self.context.turns |= angles.iter().flatten().any(|angle| *angle != 0.0);
-        angles
-    }
-
-    /// A number, or the numbers of a column of a table, so many at least and at most.
-    pub fn number_or_entries(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<NumberOrList> {
-        match self.required(name)? {
-            Value::Number(_) => self.number(name, bound).map(NumberOrList::Number),
-            Value::Array(_) => self.entries(name, bound, counts).map(NumberOrList::List),
-            other => {
-                let detail = format!("must be a number or an array of numbers, got {}", kind_of(other));
-                self.check(name, Err(detail), Ok)
+    /// Words out of several, one or more, none of them twice, by their indices.
+    pub fn words(&mut self, name: &'static str, words: &[&str]) -> Option<Vec<usize>> {
+        let expected = words.join(", ");
+        let read =
+            |element: &Value| chosen(element, words).map_err(|got| format!("must be one of {expected}, got {got}"));
+        let chosen = self.list(name, [1, words.len()], "names", read)?;
+        let mut sound = true;
+        for (index, choice) in chosen.iter().enumerate() {
+            if chosen[..index].contains(choice) {
+                self.fault_of(&format!("{name}/{index}"), format!("{} is given twice", words[*choice]));
+                sound = false;
             }
         }
+        sound.then_some(chosen)
+    }
+
+    /// Strings, so many at most.
+    pub fn strings(&mut self, name: &'static str, most: usize) -> Option<Vec<String>> {
+        self.list(name, [0, most], "strings", text)
+    }
+
+    /// Numbers, so many at least and at most.
+    pub fn numbers(
+        &mut self,
+        name: &'static str,
+        bound: Bound,
+        counts: [usize; 2],
+        unit: &'static str,
+    ) -> Option<Vec<f64>> {
+        let numbers = self.list(name, counts, "numbers", |element| bounded(element, bound))?;
+        self.list_numbers(name, numbers.len(), bound, unit);
+        Some(numbers)
+    }
+
+    /// Angles in the request's unit, so many at least and at most; the bound is in radians.
+    pub fn angles(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
+        let unit = self.context.unit;
+        let angles = self.list(name, counts, "numbers", |element| bounded_angle(element, bound, unit))?;
+        self.context.turns |= angles.iter().any(|angle| *angle != 0.0);
+        self.list_numbers(name, angles.len(), bound, ANGLE);
+        Some(angles)
+    }
+
+    /// A vector of three numbers.
+    pub fn vector(&mut self, name: &'static str, bound: Bound, unit: &'static str) -> Option<[f64; 3]> {
+        if let Some(count) = self.count(name).filter(|count| *count != 3) {
+            self.fault_of(name, format!("must have 3 numbers, got {count}"));
+        }
+        self.numbers(name, bound, [0, usize::MAX], unit)?.try_into().ok()
     }
 
     /// Rows of numbers, one or more, in each as many as there are in the list `along`, where there is one.
-    pub fn matrix_in(
+    pub fn matrix(
         &mut self,
         name: &'static str,
         bound: Bound,
@@ -300,10 +347,10 @@ impl ObjectReader<'_> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let Value::Array(rows) = value else {
-            return self.check(name, Err(format!("must be an array of arrays of numbers, got {kind}")), Ok);
+            return self.check(name, Err(format!("must be an array of arrays of numbers, got {kind}")));
         };
         if let Some(detail) = wrong_count(rows.len(), [1, MOST_ROWS]) {
-            return self.check(name, Err(detail), Ok);
+            return self.check(name, Err(detail));
         }
         let mut faults = Vec::new();
         let mut matrix = Vec::with_capacity(rows.len());
@@ -341,36 +388,12 @@ impl ObjectReader<'_> {
         sound.then_some(matrix)
     }
 
-    /// Names out of several, one or more, none of them twice.
-    pub fn choices<T: Copy>(&mut self, name: &'static str, choices: &[(&str, T)]) -> Option<Vec<T>> {
-        let names = choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-        let read = |element: &Value| {
-            let given = element.as_str().ok_or_else(|| kind_of(element).to_owned());
-            let chosen = given.and_then(|given| {
-                let known = choices.iter().position(|(name, _)| *name == given);
-                known.ok_or_else(|| quoted(given))
-            });
-            chosen.map_err(|got| format!("must be one of {names}, got {got}"))
-        };
-        let chosen = self.list(name, [1, choices.len()], "names", read)?;
-        let mut sound = true;
-        for (index, choice) in chosen.iter().enumerate() {
-            if chosen[..index].contains(choice) {
-                self.fault_of(&format!("{name}/{index}"), format!("{} is given twice", choices[*choice].0));
-                sound = false;
-            }
-        }
-        sound.then(|| chosen.into_iter().map(|choice| choices[choice].1).collect())
-    }
-
-    /// Objects, so many at most; without the field there are none.
-    pub fn optional_objects<T>(
-        &mut self,
-        name: &'static str,
-        most: usize,
-        read: impl FnMut(&mut ObjectReader) -> Option<T>,
-    ) -> Option<Vec<T>> {
-        if self.has(name) { self.objects(name, [0, most], read) } else { Some(Vec::new()) }
+    /// An object.
+    pub fn object<T>(&mut self, name: &'static str, read: impl FnOnce(&mut ObjectReader) -> Option<T>) -> Option<T> {
+        let pointer = format!("{}/{name}", self.pointer);
+        self.required(name)?;
+        let value = self.map.get_mut(name)?;
+        object(value, pointer, self.context, read)
     }
 
     /// Objects, so many at least and at most.
@@ -383,11 +406,11 @@ impl ObjectReader<'_> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let Value::Array(elements) = value else {
-            return self.check(name, Err(format!("must be an array of objects, got {kind}")), Ok);
+            return self.check(name, Err(format!("must be an array of objects, got {kind}")));
         };
         let count = elements.len();
         if let Some(detail) = wrong_count(count, counts) {
-            return self.check(name, Err(detail), Ok);
+            return self.check(name, Err(detail));
         }
         let place = format!("{}/{name}", self.pointer);
         let elements = self.map.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten();
@@ -409,11 +432,11 @@ impl ObjectReader<'_> {
         let value = self.required(name)?;
         let kind = kind_of(value);
         let Value::Array(elements) = value else {
-            return self.check(name, Err(format!("must be an array of {what}, got {kind}")), Ok);
+            return self.check(name, Err(format!("must be an array of {what}, got {kind}")));
         };
         let count = elements.len();
         if let Some(detail) = wrong_count(count, counts) {
-            return self.check(name, Err(detail), Ok);
+            return self.check(name, Err(detail));
         }
         let mut faults = Vec::new();
         let mut list = Vec::with_capacity(count);
@@ -477,191 +500,19 @@ impl ObjectReader<'_> {
         sound
     }
 
-    /// A string that may be left out.
-    pub fn optional_string(&mut self, name: &'static str) -> Option<String> {
-        if self.has(name) { self.string(name) } else { None }
-    }
-
-    /// A string that must be given.
-    pub fn string(&mut self, name: &'static str) -> Option<String> {
-        let value = self.required(name)?;
-        let string = value.as_str().map(str::to_owned).ok_or(format!("must be a string, got {}", kind_of(value)));
-        self.check(name, string, Ok)
-    }
-
-    /// Strings, so many at most; without the field there are none.
-    pub fn optional_strings(&mut self, name: &'static str, most: usize) -> Option<Vec<String>> {
-        if !self.has(name) {
-            return Some(Vec::new());
-        }
-        let read = |element: &Value| {
-            element.as_str().map(str::to_owned).ok_or_else(|| format!("must be a string, got {}", kind_of(element)))
-        };
-        self.list(name, [0, most], "strings", read)
-    }
-
-    /// Yes or no, with a default.
-    pub fn boolean_or(&mut self, name: &'static str, default: bool) -> Option<bool> {
-        self.fill(name, json!(default));
-        let value = self.required(name)?;
-        let boolean = value.as_bool().ok_or(format!("must be true or false, got {}", kind_of(value)));
-        self.check(name, boolean, Ok)
-    }
-
-    /// One of several names that must be given.
-    pub fn choice<T: Copy>(&mut self, name: &'static str, choices: &[(&str, T)]) -> Option<T> {
-        let names = choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-        let expected = format!("must be one of {names}");
-        let Some(value) = self.map.get(name) else {
-            self.known.push(name);
-            self.fault_of(name, format!("is required; it {expected}"));
-            self.kind_unknown |= name == "type";
-            return None;
-        };
-        let string = value.as_str();
-        let chosen = string.and_then(|given| choices.iter().find(|(name, _)| *name == given)).map(|(_, value)| *value);
-        let got = string.map_or_else(|| kind_of(value).to_owned(), quoted);
-        self.known.push(name);
-        self.kind_unknown |= chosen.is_none() && (name == "type" || name == "model");
-        self.check(name, chosen.ok_or(format!("{expected}, got {got}")), Ok)
-    }
-
-    /// One of several names, with a default.
-    pub fn choice_or<T: Copy>(&mut self, name: &'static str, choices: &[(&str, T)], default: &str) -> Option<T> {
-        self.fill(name, json!(default));
-        self.choice(name, choices)
-    }
-
-    /// A number or an object, each with its own reader; anything else is told what it is to be.
-    pub fn number_or_object<T>(
-        &mut self,
-        name: &'static str,
-        what: &str,
-        number: impl FnOnce(&mut ObjectReader) -> Option<T>,
-        object: impl FnOnce(&mut ObjectReader) -> Option<T>,
-    ) -> Option<T> {
-        match self.required(name)? {
-            Value::Number(_) => number(self),
-            Value::Object(_) => self.object(name, object),
-            other => {
-                let detail = format!("must be a number or {what}, got {}", kind_of(other));
-                self.check(name, Err(detail), Ok)
-            }
+    /// Lists a number that was read.
+    pub fn list_number(&mut self, name: &str, bound: Bound, unit: &'static str) {
+        if let Some(numbers) = &mut self.context.numbers {
+            numbers.push(NumberField { pointer: format!("{}/{name}", self.pointer), bound, unit });
         }
     }
 
-    /// A word or an object with its own reader; anything else is told what it is to be.
-    pub fn word_or_object<T>(
-        &mut self,
-        name: &'static str,
-        (word, meaning): (&str, T),
-        object: impl FnOnce(&mut ObjectReader) -> Option<T>,
-    ) -> Option<T> {
-        match self.required(name)? {
-            Value::String(given) if given == word => Some(meaning),
-            Value::Object(_) => self.object(name, object),
-            other => {
-                let got = other.as_str().map_or_else(|| kind_of(other).to_owned(), quoted);
-                self.check(name, Err(format!("must be {word:?} or an object, got {got}")), Ok)
-            }
+    /// Lists the numbers of a list that was read.
+    fn list_numbers(&mut self, name: &str, count: usize, bound: Bound, unit: &'static str) {
+        if let Some(numbers) = &mut self.context.numbers {
+            let field = |index| NumberField { pointer: format!("{}/{name}/{index}", self.pointer), bound, unit };
+            numbers.extend((0..count).map(field));
         }
-    }
-
-    /// Whether the field is given and an object.
-    pub fn has_object(&self, name: &str) -> bool {
-        self.map.get(name).is_some_and(Value::is_object)
-    }
-
-    /// Whether the object in the field is of this kind by its `type`, whatever else is wrong with it.
-    pub fn is_of_kind(&self, name: &str, kind: &str) -> bool {
-        self.map.get(name).is_some_and(|object| object["type"] == kind)
-    }
-
-    /// Whether an angle other than 0 was read so far.
-    pub fn turns(&self) -> bool {
-        self.context.turns
-    }
-
-    /// The unit of the request's angles; to be read before any angle.
-    pub fn angle_unit(&mut self) -> Option<AngleUnit> {
-        let unit = self.choice_or("angle_unit", &AngleUnit::NAMES, "rad");
-        self.context.unit = unit;
-        unit
-    }
-
-    /// An object that must be given.
-    pub fn object<T>(&mut self, name: &'static str, read: impl FnOnce(&mut ObjectReader) -> Option<T>) -> Option<T> {
-        let pointer = format!("{}/{name}", self.pointer);
-        self.required(name)?;
-        let value = self.map.get_mut(name)?;
-        object(value, pointer, self.context, read)
-    }
-
-    /// An object that may be left out: then there is nothing, and no fault, `Some(None)`.
-    pub fn optional_object<T>(
-        &mut self,
-        name: &'static str,
-        read: impl FnOnce(&mut ObjectReader) -> Option<T>,
-    ) -> Option<Option<T>> {
-        if self.has(name) { self.object(name, read).map(Some) } else { Some(None) }
-    }
-
-    /// An object with a default.
-    pub fn object_or<T>(
-        &mut self,
-        name: &'static str,
-        default: Value,
-        read: impl FnOnce(&mut ObjectReader) -> Option<T>,
-    ) -> Option<T> {
-        self.fill(name, default);
-        self.object(name, read)
-    }
-
-    /// Something that has its own reader for a value that must be given.
-    pub fn value<T>(&mut self, name: &'static str, read: impl FnOnce(&Value) -> Result<T, String>) -> Option<T> {
-        let value = read(self.required(name)?);
-        self.check(name, value, Ok)
-    }
-
-    /// The unit of angles, where the request's own is sound.
-    pub fn unit(&self) -> Option<AngleUnit> {
-        self.context.unit
-    }
-
-    /// Gives a field its default.
-    pub fn fill(&mut self, name: &'static str, default: Value) {
-        if !self.map.contains_key(name) {
-            self.map.insert(name.to_owned(), default);
-        }
-    }
-
-    /// A field that must be given.
-    pub fn required(&mut self, name: &'static str) -> Option<&Value> {
-        self.known.push(name);
-        if !self.map.contains_key(name) {
-            self.fault_of(name, "is required".to_owned());
-        }
-        self.map.get(name)
-    }
-
-    fn check<T, U>(
-        &mut self,
-        name: &str,
-        value: Result<T, String>,
-        check: impl FnOnce(T) -> Result<U, String>,
-    ) -> Option<U> {
-        match value.and_then(check) {
-            Ok(value) => Some(value),
-            Err(detail) => {
-                self.fault_of(name, detail);
-                None
-            }
-        }
-    }
-
-    /// Notes a fault of the field, or the element of a field, of the given relative pointer.
-    pub fn fault_of(&mut self, name: &str, detail: String) {
-        self.context.note(format!("{}/{name}", self.pointer), detail);
     }
 
     fn refuse_unknown_fields(&mut self) {
@@ -685,101 +536,12 @@ impl ObjectReader<'_> {
             }
         }
     }
+}
 
-    /// A number that must be given.
-    pub fn number_in(&mut self, name: &'static str, bound: Bound, unit: &'static str) -> Option<f64> {
-        let number = self.number(name, bound)?;
-        self.list_number(name, bound, unit);
-        Some(number)
-    }
-
-    /// An angle that must be given, in radians.
-    pub fn radians(&mut self, name: &'static str, bound: Bound) -> Option<f64> {
-        let angle = self.angle(name, bound)?;
-        self.list_number(name, bound, ANGLE);
-        self.context.unit.map(|unit| unit.to_radians(angle))
-    }
-
-    /// Numbers, so many at least and at most.
-    pub fn numbers_in(
-        &mut self,
-        name: &'static str,
-        bound: Bound,
-        counts: [usize; 2],
-        unit: &'static str,
-    ) -> Option<Vec<f64>> {
-        let numbers = self.list(name, counts, "numbers", |element| bounded(element, bound))?;
-        self.list_numbers(name, numbers.len(), bound, unit);
-        Some(numbers)
-    }
-
-    /// Angles in the request's unit, so many at least and at most; the bound is in radians.
-    pub fn angles_in(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
-        let unit = self.context.unit;
-        let angles = self.list(name, counts, "numbers", |element| bounded_angle(element, bound, unit))?;
-        self.context.turns |= angles.iter().any(|angle| *angle != 0.0);
-        self.list_numbers(name, angles.len(), bound, ANGLE);
-        Some(angles)
-    }
-
-    /// A vector of three numbers.
-    pub fn vector_in(&mut self, name: &'static str, bound: Bound, unit: &'static str) -> Option<[f64; 3]> {
-        if let Some(count) = self.count(name).filter(|count| *count != 3) {
-            self.fault_of(name, format!("must have 3 numbers, got {count}"));
-        }
-        self.numbers_in(name, bound, [0, usize::MAX], unit)?.try_into().ok()
-    }
-
-    /// A whole number between two, of which the greater may be any.
-    pub fn whole_number_between(&mut self, name: &'static str, [least, most]: [usize; 2]) -> Option<usize> {
-        let which =
-            if most == usize::MAX { format!("of at least {least}") } else { format!("between {least} and {most}") };
-        self.whole_number_in(name, least..=most, &which)
-    }
-
-    /// One of several words, by its index.
-    pub fn word(&mut self, name: &'static str, words: &[&str]) -> Option<usize> {
-        let words: Vec<_> = words.iter().copied().zip(0..).collect();
-        self.choice(name, &words)
-    }
-
-    /// Words out of several, one or more, none of them twice, by their indices.
-    pub fn words(&mut self, name: &'static str, words: &[&str]) -> Option<Vec<usize>> {
-        let words: Vec<_> = words.iter().copied().zip(0..).collect();
-        self.choices(name, &words)
-    }
-
-    /// Strings, so many at most.
-    pub fn strings(&mut self, name: &'static str, most: usize) -> Option<Vec<String>> {
-        self.list(name, [0, most], "strings", text)
-    }
-
-    /// Whether a field, given by its path through objects, is given and this word.
-    pub fn has_word(&self, path: &str, word: &str) -> bool {
-        let (name, rest) = path.split_once('/').map_or((path, None), |(name, rest)| (name, Some(rest)));
-        let value = self.map.get(name).and_then(|value| rest.map_or(Some(value), |rest| value.get(rest)));
-        value.is_some_and(|value| value == word)
-    }
-
-    /// Lists a number that was read.
-    pub fn list_number(&mut self, name: &str, bound: Bound, unit: &'static str) {
-        if let Some(numbers) = &mut self.context.numbers {
-            numbers.push(NumberField { pointer: format!("{}/{name}", self.pointer), bound, unit });
-        }
-    }
-
-    /// Lists the numbers of a list that was read.
-    fn list_numbers(&mut self, name: &str, count: usize, bound: Bound, unit: &'static str) {
-        if let Some(numbers) = &mut self.context.numbers {
-            let field = |index| NumberField { pointer: format!("{}/{name}/{index}", self.pointer), bound, unit };
-            numbers.extend((0..count).map(field));
-        }
-    }
-
-    /// The unit of the request's angles, of which all are that are read after it; none where it is faulty.
-    pub fn set_angle_unit(&mut self, unit: Option<AngleUnit>) {
-        self.context.unit = unit;
-    }
+/// The index of a word among several, or what it is in its place.
+fn chosen(value: &Value, words: &[&str]) -> Result<usize, String> {
+    let word = value.as_str().ok_or_else(|| kind_of(value).to_owned())?;
+    words.iter().position(|known| *known == word).ok_or_else(|| quoted(word))
 }
 
 /// What is wrong with the length of a list, if it is not between the two.

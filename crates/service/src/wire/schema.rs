@@ -23,7 +23,10 @@ pub mod names {
         )* }
     }
 
-    names! { Aerodynamics Control Vehicle }
+    names! {
+        AnalyticRequest AngleUnit ConvertRequest Ecef Eci Formulation Geodetic InertialFlightPath OrbitalElements PlanetModel PlanetRelative Shape
+        SimulateRequest Solution
+    }
 }
 
 /// The unit of an angle, in the schema and in lists of numbers: that which the request names in `angle_unit`.
@@ -52,6 +55,8 @@ pub struct Property {
 pub struct ObjectSchema<'a> {
     name: &'static str,
     doc: &'static str,
+    /// The names of the fields.
+    names: Vec<&'static str>,
     required: Vec<Value>,
     properties: Map<String, Value>,
     /// The variants, of an object that is a union of several.
@@ -68,6 +73,7 @@ impl<'a> ObjectSchema<'a> {
         Self {
             name: "",
             doc: "",
+            names: Vec::new(),
             required: Vec::new(),
             properties: Map::new(),
             union: None,
@@ -89,9 +95,7 @@ impl<'a> ObjectSchema<'a> {
             self.required.push(json!(name));
         }
         let mut schema = json!({"title": title, "description": doc});
-        if let Value::Object(value) = value {
-            extend(&mut schema, value);
-        }
+        extend(&mut schema, value);
         if !unit.is_empty() {
             schema["x-unit"] = json!(unit);
         }
@@ -99,12 +103,13 @@ impl<'a> ObjectSchema<'a> {
         if let Some(default) = default.filter(|default| !default.is_object()) {
             schema["default"] = default.as_f64().map_or(default, plain);
         }
+        self.names.push(name);
         self.properties.insert(name.to_owned(), schema);
     }
 
     /// Adds keywords to a field that was added before.
     pub fn refine(&mut self, name: &str, keywords: Value) {
-        if let (Some(property), Value::Object(keywords)) = (self.properties.get_mut(name), keywords) {
+        if let Some(property) = self.properties.get_mut(name) {
             extend(property, keywords);
         }
     }
@@ -148,6 +153,45 @@ impl<'a> ObjectSchema<'a> {
         self.require(keywords);
     }
 
+    /// The fields that `describe` adds are two sets, of which one is given, and whole.
+    pub fn one_set(&mut self, sets: [[&'static str; 2]; 2], describe: impl FnOnce(&mut Self)) {
+        let required = self.required.len();
+        describe(self);
+        self.required.truncate(required);
+        let mut together = json!({});
+        for [one, other] in sets {
+            together[one] = json!([other]);
+            together[other] = json!([one]);
+        }
+        self.require(json!({"dependentRequired": together}));
+        self.require(json!({"oneOf": sets.map(|[one, _]| json!({"required": [one]}))}));
+    }
+
+    /// The fields and the conditions that `describe` adds belong to the object where one of the fields, `name`, is given.
+    pub fn alternative(&mut self, name: &str, describe: impl FnOnce(&mut Self)) {
+        let (known, required, conditions) = (self.properties.len(), self.required.len(), self.all_of.len());
+        let outer = std::mem::take(&mut self.conditions);
+        describe(self);
+        self.required.truncate(required);
+        let mut conditions = self.all_of.split_off(conditions);
+        let own = std::mem::replace(&mut self.conditions, outer);
+        if !own.is_empty() {
+            conditions.push(Value::Object(own));
+        }
+        let others = self.properties.keys().skip(known).filter(|other| *other != name);
+        let absent: Map<_, _> = others.map(|other| (other.clone(), json!(false))).collect();
+        let mut keywords = json!({"if": {"required": [name]}, "else": {"properties": absent}});
+        if !conditions.is_empty() {
+            keywords["then"] = json!({"allOf": conditions});
+        }
+        self.all_of.push(keywords);
+    }
+
+    /// The names of the fields that were added.
+    pub fn field_names(&self) -> &[&'static str] {
+        &self.names
+    }
+
     /// Makes the object a union of variants, told apart by `type`: each has its word, a label, a description, and its own schema.
     pub fn be_one_of(&mut self, variants: Vec<(&'static str, &'static str, &'static str, Value)>) {
         let mapping: Map<_, _> =
@@ -176,7 +220,7 @@ impl<'a> ObjectSchema<'a> {
 
     /// Puts the schema among the components, and refers to it.
     pub fn finish(self) -> Value {
-        let Self { name, doc, required, properties, union, conditions, all_of, components } = self;
+        let Self { name, doc, names: _, required, properties, union, conditions, all_of, components } = self;
         let mut schema = union.unwrap_or_else(|| json!({"type": "object"}));
         schema["description"] = json!(doc);
         if schema.get("type").is_some() {
@@ -186,7 +230,7 @@ impl<'a> ObjectSchema<'a> {
             schema["properties"] = json!(properties);
             schema["additionalProperties"] = json!(false);
         }
-        extend(&mut schema, conditions);
+        extend(&mut schema, Value::Object(conditions));
         if !all_of.is_empty() {
             schema["allOf"] = json!(all_of);
         }
@@ -195,8 +239,9 @@ impl<'a> ObjectSchema<'a> {
     }
 }
 
-fn extend(schema: &mut Value, keywords: Map<String, Value>) {
-    if let Some(schema) = schema.as_object_mut() {
+/// Adds keywords to a schema.
+pub fn extend(schema: &mut Value, keywords: Value) {
+    if let (Some(schema), Value::Object(keywords)) = (schema.as_object_mut(), keywords) {
         schema.extend(keywords);
     }
 }
@@ -228,9 +273,7 @@ pub fn bounds(bound: Bound) -> Value {
 /// A number within a bound.
 pub fn number(bound: Bound) -> Value {
     let mut schema = json!({"type": "number", "format": "double"});
-    if let Value::Object(bounds) = bounds(bound) {
-        extend(&mut schema, bounds);
-    }
+    extend(&mut schema, bounds(bound));
     schema
 }
 

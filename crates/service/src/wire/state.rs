@@ -1,107 +1,214 @@
 //! The states of the API: the six ways to write where a vehicle is and how it moves.
 
-mod geodetic;
-mod inertial_flight_path;
-mod orbital_elements;
-mod planet_relative;
-mod vectors;
+pub mod answer;
+mod fields;
 
-pub use geodetic::Geodetic;
-pub use inertial_flight_path::InertialFlightPath;
-pub use orbital_elements::OrbitalElements;
-pub use planet_relative::PlanetRelative;
-pub use vectors::{Ecef, Eci};
+pub use fields::{FRAMES, inertial_conditions, state};
 
 use reentry::coordinates::{
-    Inertial, PlanetFixed, Rotation, TESTED_YEARS, about_pole, gcrf_to_planet_fixed, teme_to_planet_fixed,
+    self, FlightPath, Geodetic, Inertial, InertialFlightPath, OrbitShape, OrbitalElements, PlanetFixed, Rotation,
+    TESTED_YEARS, about_pole, gcrf_to_planet_fixed, teme_to_planet_fixed,
 };
 use reentry::planet::Planet as CorePlanet;
-use reentry::scenario::{Bound, state_faults};
-use serde::Serialize;
-use serde_json::json;
-use utoipa::ToSchema;
+use reentry::scenario::state_faults;
 
 use super::AngleUnit;
 use super::epoch::{Epoch, SiderealTime};
 use super::planet::Planet;
-use super::reader::{Fault, Object};
+use super::reader::Fault;
 
-/// A state, in one of six coordinate systems. Angles are in the request's `angle_unit`.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[serde(untagged)]
-#[schema(discriminator(property_name = "type", mapping(
-    ("planet_relative" = "#/components/schemas/PlanetRelative"),
-    ("geodetic" = "#/components/schemas/Geodetic"),
-    ("ecef" = "#/components/schemas/Ecef"),
-    ("eci" = "#/components/schemas/Eci"),
-    ("orbital_elements" = "#/components/schemas/OrbitalElements"),
-    ("inertial_flight_path" = "#/components/schemas/InertialFlightPath"),
-)))]
-pub enum State {
+/// A state as a request gives it, its angles in radians.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Place and motion.
+    pub coordinates: Coordinates,
+    /// The inertial frame by whose directions the state is given; planet-fixed places have none, whatever their velocity is relative to.
+    pub frame: Option<Frame>,
+    /// What the state says of the angle between its frames.
+    sidereal: Sidereal,
+}
+
+/// Place and motion of a state, before the planet and the angle between the frames are known.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the fields are those of the request, where they are described")]
+pub enum Coordinates {
     /// Speed and angles against the geocentric horizontal.
-    PlanetRelative(PlanetRelative),
+    PlanetRelative {
+        height: Height,
+        longitude: f64,
+        geocentric_latitude: f64,
+        speed: f64,
+        flight_path_angle: f64,
+        heading: f64,
+    },
     /// Speed and angles against the geodetic horizontal.
     Geodetic(Geodetic),
     /// Planet-fixed vectors.
-    Ecef(Ecef),
+    Ecef(PlanetFixed<f64>),
     /// Inertial vectors.
-    Eci(Eci),
+    Eci(Inertial),
     /// An orbit.
-    OrbitalElements(OrbitalElements),
+    OrbitalElements {
+        shape: OrbitShape,
+        eccentricity: f64,
+        inclination: f64,
+        raan: f64,
+        argument_of_periapsis: f64,
+        anomaly: Anomaly,
+    },
     /// Speed and angles of the inertial velocity against the geocentric horizontal.
-    InertialFlightPath(InertialFlightPath),
+    InertialFlightPath {
+        height: Height,
+        longitude: f64,
+        geocentric_latitude: f64,
+        inertial_speed: f64,
+        inertial_flight_path_angle: f64,
+        inertial_heading: f64,
+    },
+}
+
+/// How far a place is from the planet's centre, m.
+#[derive(Clone, Copy, Debug)]
+pub enum Height {
+    /// From the centre.
+    Radius(f64),
+    /// Above the planet's shape, along the radius vector.
+    Altitude(f64),
+}
+
+/// Where a vehicle is on its orbit, rad.
+#[derive(Clone, Copy, Debug)]
+pub enum Anomaly {
+    /// The angle from the periapsis.
+    True(f64),
+    /// The angle that grows evenly in time.
+    Mean(f64),
+}
+
+impl Height {
+    /// The distance from the centre, m, at a geocentric latitude, rad.
+    fn radius(self, geocentric_latitude: f64, planet: &CorePlanet) -> f64 {
+        match self {
+            Self::Radius(radius) => radius,
+            Self::Altitude(altitude) => {
+                let (sin_latitude, cos_latitude) = geocentric_latitude.sin_cos();
+                planet.shape.surface_radius(sin_latitude, cos_latitude) + altitude
+            }
+        }
+    }
+
+    /// What is wrong with an altitude that puts a state at the pointer on the centre or beyond it.
+    fn faults(self, pointer: &str, geocentric_latitude: f64, planet: &CorePlanet) -> Vec<Fault> {
+        let radius = self.radius(geocentric_latitude, planet);
+        let surface = Self::Altitude(0.0).radius(geocentric_latitude, planet);
+        let detail = || format!("must lie above the planet's centre, {surface:.0} m below the surface here");
+        let fault = (radius <= 0.0).then(|| Fault::new(format!("{pointer}/altitude"), detail()));
+        fault.into_iter().collect()
+    }
+}
+
+impl Coordinates {
+    /// What is wrong with the place on this planet, of a state at the pointer.
+    fn faults(&self, pointer: &str, planet: &CorePlanet) -> Vec<Fault> {
+        match self {
+            Self::PlanetRelative { height, geocentric_latitude, .. }
+            | Self::InertialFlightPath { height, geocentric_latitude, .. } => {
+                height.faults(pointer, *geocentric_latitude, planet)
+            }
+            Self::Geodetic(state) => {
+                // The altitude must not reach down beyond the centre, to the other side.
+                let foot = Geodetic { geodetic_altitude: 0.0, ..*state };
+                let [here, foot] = [*state, foot].map(|state| state.to_planet_fixed(&planet.shape).position);
+                let beyond = here.dot(&foot) < 0.0;
+                let detail = format!("must lie above the planet's centre, {:.0} m below the surface here", foot.norm());
+                beyond.then(|| Fault::new(format!("{pointer}/geodetic_altitude"), detail)).into_iter().collect()
+            }
+            Self::OrbitalElements { shape, eccentricity, anomaly, .. } => {
+                orbit_faults(pointer, *shape, *eccentricity, *anomaly)
+            }
+            Self::Ecef(_) | Self::Eci(_) => Vec::new(),
+        }
+    }
+
+    fn to_planet_fixed(&self, planet: &CorePlanet, to_planet: &Rotation) -> PlanetFixed<f64> {
+        match *self {
+            Self::PlanetRelative { height, longitude, geocentric_latitude, speed, flight_path_angle, heading } => {
+                let radius = height.radius(geocentric_latitude, planet);
+                FlightPath { radius, longitude, geocentric_latitude, speed, flight_path_angle, heading }
+                    .to_planet_fixed()
+            }
+            Self::InertialFlightPath {
+                height,
+                longitude,
+                geocentric_latitude,
+                inertial_speed,
+                inertial_flight_path_angle,
+                inertial_heading,
+            } => {
+                let state = InertialFlightPath {
+                    radius: height.radius(geocentric_latitude, planet),
+                    longitude,
+                    geocentric_latitude,
+                    inertial_speed,
+                    inertial_flight_path_angle,
+                    inertial_heading,
+                };
+                state.to_planet_fixed(planet)
+            }
+            Self::Geodetic(state) => state.to_planet_fixed(&planet.shape),
+            Self::Ecef(state) => state,
+            Self::Eci(state) => state.to_planet_fixed_by(planet, to_planet),
+            Self::OrbitalElements { shape, eccentricity, inclination, raan, argument_of_periapsis, anomaly } => {
+                let true_anomaly = match anomaly {
+                    Anomaly::True(anomaly) => anomaly,
+                    Anomaly::Mean(anomaly) => coordinates::true_anomaly(anomaly, eccentricity),
+                };
+                let elements =
+                    OrbitalElements { shape, eccentricity, inclination, raan, argument_of_periapsis, true_anomaly };
+                elements.to_inertial(planet.orbital_gravitational_parameter).to_planet_fixed_by(planet, to_planet)
+            }
+        }
+    }
+}
+
+/// The orbit's size must go with its eccentricity, and the vehicle must be on it.
+fn orbit_faults(pointer: &str, shape: OrbitShape, e: f64, anomaly: Anomaly) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    match shape {
+        OrbitShape::SemiMajorAxis(_) if e.total_cmp(&1.0).is_eq() => {
+            let detail = "a parabola (eccentricity 1) has no semi-major axis; give semi_latus_rectum in its place";
+            faults.push(Fault::new(format!("{pointer}/semi_major_axis"), detail));
+        }
+        OrbitShape::SemiMajorAxis(a) if a * (1.0 - e) <= 0.0 => {
+            let sign = if e < 1.0 { "positive" } else { "negative" };
+            let detail = format!("must be {sign} where the eccentricity is {e}, got {a}");
+            faults.push(Fault::new(format!("{pointer}/semi_major_axis"), detail));
+        }
+        _ => {}
+    }
+    match anomaly {
+        Anomaly::True(anomaly) => {
+            let reach = 1.0 + e * anomaly.cos();
+            if reach <= 0.0 {
+                let detail =
+                    format!("lies beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach}");
+                faults.push(Fault::new(format!("{pointer}/true_anomaly"), detail));
+            }
+        }
+        Anomaly::Mean(_) if e >= 1.0 => {
+            let detail =
+                format!("needs a bound orbit, of an eccentricity below 1, got {e}; give true_anomaly in its place");
+            faults.push(Fault::new(format!("{pointer}/mean_anomaly"), detail));
+        }
+        Anomaly::Mean(_) => {}
+    }
+    faults
 }
 
 impl State {
-    /// Reads a state of any kind.
-    ///
-    /// Without an epoch, the time since its frames were aligned is 0 where it does not say otherwise.
-    pub fn read(object: &mut Object, has_epoch: bool) -> Option<Self> {
-        let read = object.choice::<fn(&mut Object, bool) -> Option<Self>>(
-            "type",
-            &[
-                ("planet_relative", |object, has_epoch| {
-                    PlanetRelative::read(object, has_epoch).map(Self::PlanetRelative)
-                }),
-                ("geodetic", |object, has_epoch| Geodetic::read(object, has_epoch).map(Self::Geodetic)),
-                ("ecef", |object, has_epoch| Ecef::read(object, has_epoch).map(Self::Ecef)),
-                ("eci", |object, has_epoch| Eci::read(object, has_epoch).map(Self::Eci)),
-                ("orbital_elements", |object, has_epoch| {
-                    OrbitalElements::read(object, has_epoch).map(Self::OrbitalElements)
-                }),
-                ("inertial_flight_path", |object, has_epoch| {
-                    InertialFlightPath::read(object, has_epoch).map(Self::InertialFlightPath)
-                }),
-            ],
-        )?;
-        read(object, has_epoch)
-    }
-
-    /// What the state says of the angle between its frames.
-    fn sidereal(&self) -> Sidereal {
-        let (time, angle) = match self {
-            Self::PlanetRelative(state) => (state.sidereal_time, state.sidereal_angle),
-            Self::Geodetic(state) => (state.sidereal_time, state.sidereal_angle),
-            Self::Ecef(state) => (state.sidereal_time, state.sidereal_angle),
-            Self::Eci(state) => (state.sidereal_time, state.sidereal_angle),
-            Self::OrbitalElements(state) => (state.sidereal_time, state.sidereal_angle),
-            Self::InertialFlightPath(state) => (state.sidereal_time, state.sidereal_angle),
-        };
-        Sidereal { time, angle }
-    }
-
     /// Whether the state itself gives the angle between its frames.
     pub fn gives_sidereal(&self) -> bool {
-        self.sidereal() != Sidereal::default()
-    }
-
-    /// The inertial frame by whose directions the state is given; planet-fixed places have none, whatever their velocity is relative to.
-    pub fn frame(&self) -> Option<Frame> {
-        match self {
-            Self::Eci(state) => Some(state.frame),
-            Self::OrbitalElements(state) => Some(state.frame),
-            Self::PlanetRelative(_) | Self::Geodetic(_) | Self::Ecef(_) | Self::InertialFlightPath(_) => None,
-        }
+        self.sidereal != Sidereal::default()
     }
 
     /// The angle in radians by which the planet is turned from the inertial frame of date; 0 where the request has a fault about it.
@@ -121,13 +228,7 @@ impl State {
         unit: AngleUnit,
         planet: &Planet,
     ) -> Result<(PlanetFixed<f64>, Orientation), Vec<Fault>> {
-        let mut faults = match self {
-            Self::PlanetRelative(state) => state.faults(pointer, unit, &planet.core),
-            Self::OrbitalElements(state) => state.faults(pointer, unit),
-            Self::Geodetic(state) => state.faults(pointer, unit, &planet.core),
-            Self::InertialFlightPath(state) => state.faults(pointer, unit, &planet.core),
-            Self::Ecef(_) | Self::Eci(_) => Vec::new(),
-        };
+        let mut faults = self.coordinates.faults(pointer, &planet.core);
         let orientation = match self.orientation(epoch, pointer, unit, planet) {
             Ok(orientation) if faults.is_empty() => orientation,
             other => {
@@ -135,7 +236,7 @@ impl State {
                 return Err(faults);
             }
         };
-        let state = self.to_planet_fixed(unit, &planet.core, &orientation.to_planet);
+        let state = self.coordinates.to_planet_fixed(&planet.core, &orientation.to_planet);
         let faults: Vec<_> = state_faults(&state).iter().map(|fault| Fault::new(pointer, fault.to_string())).collect();
         if faults.is_empty() { Ok((state, orientation)) } else { Err(faults) }
     }
@@ -148,10 +249,11 @@ impl State {
         unit: AngleUnit,
         planet: &Planet,
     ) -> Result<Orientation, Fault> {
-        let given = self.sidereal();
-        let frame = self.frame().unwrap_or(Frame::Date);
+        let given = self.sidereal;
+        let frame = self.frame.unwrap_or(Frame::Date);
         if frame != Frame::Date {
-            let fault = |detail: &str| Fault::new(format!("{pointer}/frame"), format!("{:?} {detail}", frame.name()));
+            let fault =
+                |detail: &str| Fault::new(format!("{pointer}/frame"), format!("{:?} {detail}", FRAMES.of(frame)));
             let epoch = epoch.ok_or_else(|| fault("needs an epoch"))?;
             if !planet.is_earth() {
                 return Err(fault("is a frame of the Earth, and not of a custom planet"));
@@ -169,7 +271,7 @@ impl State {
         let sidereal = match epoch {
             _ if self.gives_sidereal() => given,
             Some(epoch) if planet.is_earth() => Sidereal::of_earth(epoch, planet),
-            Some(_) if self.frame().is_some() => {
+            Some(_) if self.frame.is_some() => {
                 let detail = "is required: an epoch says nothing about the angle of a custom planet; give sidereal_time or \
                               sidereal_angle";
                 return Err(Fault::new(format!("{pointer}/sidereal_time"), detail));
@@ -178,28 +280,9 @@ impl State {
         };
         Ok(Orientation { frame, sidereal, to_planet: about_pole(sidereal.to_angle(unit, &planet.core)) })
     }
-
-    fn to_planet_fixed(&self, unit: AngleUnit, planet: &CorePlanet, to_planet: &Rotation) -> PlanetFixed<f64> {
-        match self {
-            Self::PlanetRelative(state) => state.to_core(unit, planet).to_planet_fixed(),
-            Self::Geodetic(state) => state.to_core(unit).to_planet_fixed(&planet.shape),
-            Self::InertialFlightPath(state) => state.to_core(unit, planet).to_planet_fixed(planet),
-            Self::Ecef(state) => PlanetFixed { position: state.position.into(), velocity: state.velocity.into() },
-            Self::Eci(state) => {
-                let inertial = Inertial { position: state.position.into(), velocity: state.velocity.into() };
-                inertial.to_planet_fixed_by(planet, to_planet)
-            }
-            Self::OrbitalElements(state) => {
-                let inertial = state.to_core(unit).to_inertial(planet.orbital_gravitational_parameter);
-                inertial.to_planet_fixed_by(planet, to_planet)
-            }
-        }
-    }
 }
-
 /// An inertial frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
     /// The planet's equator, from which the planet is turned by the sidereal time; with an epoch on the Earth, the equator and the
     /// celestial intermediate origin of date.
@@ -208,35 +291,6 @@ pub enum Frame {
     Teme,
     /// The geocentric celestial reference frame, from which J2000 differs by less than 0.1 arc seconds.
     Gcrf,
-}
-
-impl Frame {
-    const NAMES: [(&'static str, Self); 3] = [("date", Self::Date), ("teme", Self::Teme), ("gcrf", Self::Gcrf)];
-
-    /// Its name in requests.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Date => "date",
-            Self::Teme => "teme",
-            Self::Gcrf => "gcrf",
-        }
-    }
-
-    /// Reads the frame, and the sidereal time or angle, which is for the frame of date alone.
-    fn read(object: &mut Object, has_epoch: bool) -> (Option<Self>, Option<Sidereal>) {
-        let frame = object.choice_or("frame", &Self::NAMES, "date");
-        let Some(of_epoch) = frame.filter(|frame| *frame != Self::Date) else {
-            return (frame, Sidereal::read(object, has_epoch));
-        };
-        for name in Sidereal::FIELDS {
-            if object.has(name) {
-                let detail =
-                    format!("must be left out with the frame {:?}, whose angle the epoch gives", of_epoch.name());
-                object.fault_of(name, detail);
-            }
-        }
-        (frame, Some(Sidereal::default()))
-    }
 }
 
 /// How an inertial frame lies beside the planet-fixed one.
@@ -267,22 +321,6 @@ pub struct Sidereal {
 }
 
 impl Sidereal {
-    const FIELDS: [&'static str; 2] = ["sidereal_time", "sidereal_angle"];
-
-    fn read(object: &mut Object, has_epoch: bool) -> Option<Self> {
-        let has_angle = object.has("sidereal_angle");
-        let angle = if has_angle { object.angle("sidereal_angle", Bound::TURN).map(Some) } else { Some(None) };
-        if !has_epoch && !has_angle {
-            object.fill("sidereal_time", json!(0));
-        }
-        let has_time = object.has("sidereal_time");
-        let time = if has_time { object.value("sidereal_time", SiderealTime::read).map(Some) } else { Some(None) };
-        if has_time && has_angle {
-            object.fault::<()>("must have at most one of sidereal_time, sidereal_angle, got both");
-        }
-        Some(Self { time: time?, angle: angle? })
-    }
-
     /// By the Earth rotation angle of the instant.
     fn of_earth(epoch: Epoch, planet: &Planet) -> Self {
         let seconds = epoch.earth_rotation_angle() / planet.core.rotation_rate;
@@ -293,25 +331,4 @@ impl Sidereal {
         let SiderealTime(seconds) = self.time.unwrap_or(SiderealTime(0.0));
         self.angle.map_or(planet.rotation_rate * seconds, |angle| unit.to_radians(angle))
     }
-}
-
-/// The distance from the centre, m, of a place that is given by exactly one of radius and altitude, at a geocentric latitude, rad.
-fn radius_of(radius: Option<f64>, altitude: Option<f64>, geocentric_latitude: f64, planet: &CorePlanet) -> f64 {
-    let (sin_latitude, cos_latitude) = geocentric_latitude.sin_cos();
-    let surface = planet.shape.surface_radius(sin_latitude, cos_latitude);
-    let above_surface = altitude.map(|altitude| surface + altitude);
-    radius.or(above_surface).unwrap_or(surface)
-}
-
-/// What is wrong with an altitude that puts a state at the pointer on the centre or beyond it.
-fn centre_faults(pointer: &str, radius: f64, altitude: Option<f64>) -> Vec<Fault> {
-    let surface = radius - altitude.unwrap_or(0.0);
-    let detail = || format!("must lie above the planet's centre, {surface:.0} m below the surface here");
-    let fault = (radius <= 0.0).then(|| Fault::new(format!("{pointer}/altitude"), detail()));
-    fault.into_iter().collect()
-}
-
-/// The length of a vector that was checked against the bound, and may exceed it by a rounding: the answer can be sent back.
-fn within(bound: Bound, length: f64) -> f64 {
-    length.min(bound.maximum)
 }

@@ -11,13 +11,13 @@ use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::columns::{Columns, Row};
-use super::planet::{PlanetModel, Shape};
-use super::scenario::{Formulation, Job};
+use super::planet::MODELS;
+use super::scenario::{FORMULATIONS, Job};
+use super::schema::names;
 use super::sensitivities::Sensitivities;
 use super::vehicle;
 use super::verification::Verification;
 use super::warning::Warning;
-use super::wind::Wind;
 
 /// How the flight ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
@@ -135,9 +135,11 @@ pub struct PhaseReport {
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Models {
     /// The planet.
-    pub planet: PlanetModel,
+    #[schema(value_type = names::PlanetModel)]
+    pub planet: &'static str,
     /// Its surface.
-    pub shape: Shape,
+    #[schema(value_type = names::Shape)]
+    pub shape: &'static str,
     /// The type of the atmosphere.
     pub atmosphere: &'static str,
     /// The type of the gravity.
@@ -152,7 +154,8 @@ pub struct Models {
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct SolverReport {
     /// Which equations.
-    pub formulation: Formulation,
+    #[schema(value_type = names::Formulation)]
+    pub formulation: &'static str,
     /// The error allowed in a step.
     pub relative_tolerance: f64,
     /// Accepted steps.
@@ -184,6 +187,7 @@ pub struct SimulateResponse {
     #[schema(required = false, nullable = false)]
     pub name: Option<String>,
     /// The unit of every angle.
+    #[schema(value_type = names::AngleUnit)]
     pub angle_unit: AngleUnit,
     /// Of the service.
     pub version: &'static str,
@@ -228,7 +232,7 @@ pub struct SimulateResponse {
     pub warnings: Vec<Warning>,
     /// The request with every default filled in, with `echo`: it can be sent again.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = super::scenario::SimulateRequest)]
+    #[schema(required = false, value_type = names::SimulateRequest)]
     pub case: Option<Value>,
 }
 
@@ -277,12 +281,12 @@ impl SimulateResponse {
             angle_unit: unit,
             version: env!("CARGO_PKG_VERSION"),
             models: Models {
-                planet: request.planet.model,
-                shape: request.planet.shape,
+                planet: MODELS.of(request.planet.model),
+                shape: request.planet.shape(),
                 atmosphere: request.atmosphere.kind(),
-                gravity: request.planet.gravity.kind(),
+                gravity: request.planet.gravity(),
                 aerodynamics: vehicle::kind(&request.vehicle.aerodynamics),
-                wind: request.wind.as_ref().map_or("still", Wind::kind),
+                wind: request.wind.kind(),
             },
             termination,
             condition,
@@ -294,7 +298,7 @@ impl SimulateResponse {
             sensitivities: extras.sensitivities,
             verification: extras.verification,
             solver: SolverReport {
-                formulation: request.solver.formulation,
+                formulation: FORMULATIONS.of(request.solver.equations),
                 relative_tolerance: request.solver.relative_tolerance,
                 steps: statistics.steps,
                 rejected_steps: statistics.rejected_steps,

@@ -11,20 +11,18 @@ use super::reader::{MOST_COLUMNS, MOST_ENTRIES, MOST_ROWS};
 /// The vehicle.
 pub(super) fn vehicle(object: &mut Object) -> Option<Vehicle> {
     object.named("Vehicle", "A point mass with lift and drag.");
-    let mass = object.field("mass", "Mass", "kg.").unit("kg").number(Bound::POSITIVE);
+    let mass = object.field("mass", "Mass").doc("kg.").unit("kg").number(Bound::POSITIVE);
     let reference_area = object.only_unless("aerodynamics/type", "ballistic", |object| {
         object
-            .field(
-                "reference_area",
-                "Reference area",
-                "The area to which the coefficients refer, m²; required, but with `ballistic` aerodynamics, which take none.",
-            )
+            .field("reference_area", "Reference area")
+            .doc("The area to which the coefficients refer, m²; required, but with `ballistic` aerodynamics, which take none.")
             .unit("m²")
             .number(Bound::NON_NEGATIVE)
     });
-    let aerodynamics = object.field("aerodynamics", "Aerodynamics", "Lift and drag.").object(aerodynamics);
+    let aerodynamics = object.field("aerodynamics", "Aerodynamics").doc("Lift and drag.").object(aerodynamics);
     let nose_radius = object
-        .field("nose_radius", "Nose radius", "Of the nose at its stagnation point, m; required with `heating`.")
+        .field("nose_radius", "Nose radius")
+        .doc("Of the nose at its stagnation point, m; required with `heating`.")
         .unit("m")
         .optional()
         .number(Bound::POSITIVE);
@@ -66,15 +64,13 @@ pub(super) fn kind(aerodynamics: &Aerodynamics) -> &'static str {
 fn constant(object: &mut Object) -> Option<Aerodynamics> {
     object.named("ConstantAerodynamics", "Coefficients that are the same at every speed.");
     let lift_coefficient = object
-        .field(
-            "lift_coefficient",
-            "Lift coefficient",
-            "Negative lift points down at zero bank. Lift fades out within 0.001 rad of the vertical, where the bank angle is undefined.",
-        )
+        .field("lift_coefficient", "Lift coefficient")
+        .doc("Negative lift points down at zero bank. Lift fades out within 0.001 rad of the vertical, where the bank angle is undefined.")
         .default(0.0)
         .number(Bound::FINITE);
     let drag_coefficient = object
-        .field("drag_coefficient", "Drag coefficient", "Drag acts against the velocity relative to the air.")
+        .field("drag_coefficient", "Drag coefficient")
+        .doc("Drag acts against the velocity relative to the air.")
         .number(Bound::NON_NEGATIVE);
     Some(Aerodynamics::Constant { lift_coefficient: lift_coefficient?, drag_coefficient: drag_coefficient? })
 }
@@ -85,15 +81,13 @@ fn ballistic(object: &mut Object) -> Option<Aerodynamics> {
         "Coefficients that are the same at every speed, by the ratios on which the flight depends.",
     );
     let ballistic_coefficient = object
-        .field(
-            "ballistic_coefficient",
-            "Ballistic coefficient",
-            "Mass over drag coefficient and reference area, kg/m².",
-        )
+        .field("ballistic_coefficient", "Ballistic coefficient")
+        .doc("Mass over drag coefficient and reference area, kg/m².")
         .unit("kg/m²")
         .number(Bound::POSITIVE);
     let lift_to_drag = object
-        .field("lift_to_drag", "Lift over drag", "Lift over drag; negative lift points down at zero bank.")
+        .field("lift_to_drag", "Lift over drag")
+        .doc("Lift over drag; negative lift points down at zero bank.")
         .default(0.0)
         .number(Bound::FINITE);
     Some(Aerodynamics::Ballistic { ballistic_coefficient: ballistic_coefficient?, lift_to_drag: lift_to_drag? })
@@ -102,7 +96,8 @@ fn ballistic(object: &mut Object) -> Option<Aerodynamics> {
 /// Mach numbers of a table.
 fn mach_numbers(object: &mut Object, title: &'static str, most: usize) -> Option<Vec<f64>> {
     object
-        .field("mach", title, "The speed relative to the air over that of sound, ascending.")
+        .field("mach", title)
+        .doc("The speed relative to the air over that of sound, ascending.")
         .ascending()
         .numbers(Bound::NON_NEGATIVE, [1, most])
 }
@@ -110,15 +105,17 @@ fn mach_numbers(object: &mut Object, title: &'static str, most: usize) -> Option
 fn mach_table(object: &mut Object) -> Option<Aerodynamics> {
     object.named(
         "MachTable",
-        "Coefficients by Mach number, smooth between the entries; beyond the first and the last their values hold. All lists have as many. \
-         Needs an atmosphere that has a speed of sound.",
+        "Coefficients by Mach number, smooth between the entries; beyond the first and the last their values hold. All lists have as many. Needs an \
+         atmosphere that has a speed of sound.",
     );
     let mach = mach_numbers(object, "Mach", MOST_ENTRIES);
     let lift_coefficient = object
-        .field("lift_coefficient", "Lift coefficient", "Negative lift points down at zero bank.")
+        .field("lift_coefficient", "Lift coefficient")
+        .doc("Negative lift points down at zero bank.")
         .numbers(Bound::FINITE, [1, MOST_ENTRIES]);
     let drag_coefficient = object
-        .field("drag_coefficient", "Drag coefficient", "At least 0.")
+        .field("drag_coefficient", "Drag coefficient")
+        .doc("At least 0.")
         .numbers(Bound::NON_NEGATIVE, [1, MOST_ENTRIES]);
     let sound = object.equally_long("mach", &["lift_coefficient", "drag_coefficient"]);
     let (mach, lift_coefficient, drag_coefficient) = (mach?, lift_coefficient?, drag_coefficient?);
@@ -129,20 +126,21 @@ fn mach_table(object: &mut Object) -> Option<Aerodynamics> {
 fn alpha_mach_table(object: &mut Object) -> Option<Aerodynamics> {
     object.named(
         "AlphaMachTable",
-        "Coefficients by angle of attack and Mach number, smooth between the entries; beyond the first and the last their values hold. \
-         Of each coefficient a row for every angle of attack, with a number for every Mach number. \
-         Needs an atmosphere that has a speed of sound.",
+        "Coefficients by angle of attack and Mach number, smooth between the entries; beyond the first and the last their values hold. Of each \
+         coefficient a row for every angle of attack, with a number for every Mach number. Needs an atmosphere that has a speed of sound.",
     );
     let angle_of_attack = object
-        .field("angle_of_attack", "Angles of attack (rows)", "Ascending, within ±2π (±360°).")
+        .field("angle_of_attack", "Angles of attack (rows)")
+        .doc("Ascending, within ±2π (±360°).")
         .ascending()
         .angles(Bound::TURN, MOST_ROWS);
     let mach = mach_numbers(object, "Mach numbers (columns)", MOST_COLUMNS);
     let lift_coefficient = object
-        .field("lift_coefficient", "Lift coefficients", "Negative lift points down at zero bank.")
+        .field("lift_coefficient", "Lift coefficients")
+        .doc("Negative lift points down at zero bank.")
         .matrix(Bound::FINITE, "mach");
     let drag_coefficient =
-        object.field("drag_coefficient", "Drag coefficients", "At least 0.").matrix(Bound::NON_NEGATIVE, "mach");
+        object.field("drag_coefficient", "Drag coefficients").doc("At least 0.").matrix(Bound::NON_NEGATIVE, "mach");
     let sound = object.equally_long("angle_of_attack", &["lift_coefficient", "drag_coefficient"]);
     let (angle_of_attack, mach) = (angle_of_attack?, mach?);
     let (lift_coefficient, drag_coefficient) = (lift_coefficient?, drag_coefficient?);

@@ -14,7 +14,7 @@ use super::epoch::Epoch;
 use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
 use super::scenario::SimulateRequest;
-use super::state::{Frame, State};
+use super::state::{FRAMES, Frame, State};
 use super::{Angle, AngleUnit};
 
 /// Something that the user should know.
@@ -42,7 +42,7 @@ impl Warning {
         warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
         warnings.extend(request.assumed.atmosphere.then(|| Self::thesis_atmosphere(request.planet.model)));
         warnings.extend(Self::gas_of_earth(request));
-        let later = request.events.iter().filter_map(|event| event.then.aerodynamics.as_ref());
+        let later = request.events.iter().filter_map(|event| event.then.core.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
         let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
         if is_given(&request.control.angle_of_attack) && !by_angle_of_attack {
@@ -86,7 +86,7 @@ impl Warning {
         if request.planet.model != PlanetModel::Custom {
             return Vec::new();
         }
-        let of_air = request.atmosphere.of_earth().filter(|_| !request.assumed.atmosphere).map(str::to_owned);
+        let of_air = request.atmosphere.of_earth.filter(|_| !request.assumed.atmosphere).map(str::to_owned);
         let correlations = request.heating.iter().flat_map(Heating::of_air).map(|correlation| {
             let remedy = match correlation {
                 "tauber_sutton" => "set \"radiative\": \"none\"",
@@ -211,7 +211,7 @@ impl Warning {
 
     /// In which frame an inertial state was taken, on the Earth at an epoch.
     pub fn of_frame(state: &State, epoch: Option<Epoch>, planet: &Planet) -> Option<Self> {
-        let frame = state.frame().filter(|_| epoch.is_some() && planet.is_earth())?;
+        let frame = state.frame.filter(|_| epoch.is_some() && planet.is_earth())?;
         Some(match frame {
             Frame::Date => {
                 let turned = if state.gives_sidereal() {
@@ -228,7 +228,7 @@ impl Warning {
             Frame::Teme | Frame::Gcrf => {
                 let detail = format!(
                     "Inertial frame is {}, without polar motion and UT1-UTC: at most 18 m and 0.9 s, which is 420 m on the equator",
-                    frame.name()
+                    FRAMES.of(frame)
                 );
                 Self::new("earth_orientation_neglected", &detail)
             }
@@ -299,7 +299,6 @@ pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use reentry::trajectory::{TableId, Warning as CoreWarning};
-    use reentry::vehicle::Aerodynamics;
 
     use super::{AngleUnit, Warning};
 

@@ -1,0 +1,366 @@
+//! The fields of a state, by its kind.
+
+use reentry::coordinates::{Geodetic, Inertial, OrbitShape, PlanetFixed};
+use reentry::scenario::Bound;
+use serde_json::{Value, json};
+
+use super::{Anomaly, Coordinates, Frame, Height, Sidereal, State};
+use crate::wire::description::{Object, Words, variant, word};
+use crate::wire::epoch::{self, SiderealTime};
+
+/// A state of any kind.
+///
+/// Without an epoch, the time since its frames were aligned is 0 where it does not say otherwise.
+pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named("State", "A state, in one of six coordinate systems. Angles are in the request's `angle_unit`.");
+    object.variants(
+        "The kind of state.",
+        &[
+            variant(
+                "planet_relative",
+                "Planet-relative (the thesis’s)",
+                "Speed and angles against the geocentric horizontal.",
+                &|object| planet_relative(object, has_epoch),
+            ),
+            variant("geodetic", "Geodetic", "Speed and angles against the geodetic horizontal.", &|object| {
+                geodetic(object, has_epoch)
+            }),
+            variant("ecef", "Planet-fixed vectors (ECEF)", "Planet-fixed vectors.", &|object| ecef(object, has_epoch)),
+            variant("eci", "Inertial vectors (ECI)", "Inertial vectors.", &|object| eci(object, has_epoch)),
+            variant("orbital_elements", "Orbital elements", "An orbit.", &|object| orbital_elements(object, has_epoch)),
+            variant(
+                "inertial_flight_path",
+                "Inertial entry interface",
+                "Speed and angles of the inertial velocity against the geocentric horizontal.",
+                &|object| inertial_flight_path(object, has_epoch),
+            ),
+        ],
+    )
+}
+
+fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named(
+        "PlanetRelative",
+        "Place and motion relative to the rotating planet, against the geocentric horizontal: the thesis's vehicle-pointing system.",
+    );
+    let height = height(object);
+    let longitude = object.field("longitude", "Longitude").doc("East positive, within ±2π (±360°).").angle(Bound::TURN);
+    let geocentric_latitude = object
+        .field("geocentric_latitude", "Latitude, geocentric")
+        .doc("Within ±π/2 (±90°).")
+        .angle(Bound::QUARTER_TURN);
+    let speed =
+        object.field("speed", "Speed").doc("Relative to the rotating planet, m/s.").unit("m/s").number(Bound::SPEED);
+    let flight_path_angle = object
+        .field("flight_path_angle", "Flight-path angle")
+        .doc(
+            "Of the relative velocity above the local horizontal (the plane normal to the radius), within ±π/2 (±90°).",
+        )
+        .angle(Bound::QUARTER_TURN);
+    let heading = object
+        .field("heading", "Heading, from east to north")
+        .doc("From east (0) towards north (π/2), within ±2π (±360°). Exactly one of `heading` and `azimuth`.")
+        .optional()
+        .angle(Bound::TURN);
+    let azimuth = object
+        .field("azimuth", "Azimuth, clockwise from north")
+        .doc("Clockwise from north, within ±2π (±360°). Exactly one of `heading` and `azimuth`.")
+        .optional()
+        .angle(Bound::TURN);
+    object.exactly_one(&["heading", "azimuth"]);
+    let sidereal = sidereal(object, has_epoch);
+    let coordinates = Coordinates::PlanetRelative {
+        height: height?,
+        longitude: longitude?,
+        geocentric_latitude: geocentric_latitude?,
+        speed: speed?,
+        flight_path_angle: flight_path_angle?,
+        heading: heading.or(azimuth.map(from_azimuth))?,
+    };
+    Some(State { coordinates, frame: None, sidereal })
+}
+
+fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named("Geodetic", "Place and motion relative to the rotating planet, against the geodetic horizontal.");
+    let geodetic_altitude = object
+        .field("geodetic_altitude", "Altitude, geodetic")
+        .doc("Height above the planet's shape along its normal, m.")
+        .unit("m")
+        .number(Bound::DISTANCE);
+    let longitude = object.field("longitude", "Longitude").doc("East positive, within ±2π (±360°).").angle(Bound::TURN);
+    let geodetic_latitude =
+        object.field("geodetic_latitude", "Latitude, geodetic").doc("Within ±π/2 (±90°).").angle(Bound::QUARTER_TURN);
+    let speed =
+        object.field("speed", "Speed").doc("Relative to the rotating planet, m/s.").unit("m/s").number(Bound::SPEED);
+    let flight_path_angle = object
+        .field("flight_path_angle", "Flight-path angle")
+        .doc("Of the relative velocity above the geodetic horizontal, within ±π/2 (±90°).")
+        .angle(Bound::QUARTER_TURN);
+    let azimuth = object
+        .field("azimuth", "Azimuth, clockwise from north")
+        .doc("Clockwise from north, within ±2π (±360°); answers give [0, 2π).")
+        .angle(Bound::TURN);
+    let sidereal = sidereal(object, has_epoch);
+    let coordinates = Coordinates::Geodetic(Geodetic {
+        geodetic_altitude: geodetic_altitude?,
+        longitude: longitude?,
+        geodetic_latitude: geodetic_latitude?,
+        speed: speed?,
+        flight_path_angle: flight_path_angle?,
+        azimuth: azimuth?,
+    });
+    Some(State { coordinates, frame: None, sidereal })
+}
+
+fn ecef(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object
+        .named("Ecef", "Planet-fixed vectors, relative to the rotating planet: x through longitude 0 on the equator, z along the pole.");
+    let position = position(object);
+    let velocity = object
+        .field("velocity", "Velocity")
+        .doc("Velocity [x, y, z] relative to the rotating planet, m/s; its magnitude at most 1e6.")
+        .unit("m/s")
+        .vector(Bound::VELOCITY);
+    let sidereal = sidereal(object, has_epoch);
+    let coordinates = Coordinates::Ecef(PlanetFixed { position: position?.into(), velocity: velocity?.into() });
+    Some(State { coordinates, frame: None, sidereal })
+}
+
+fn eci(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object
+        .named("Eci", "Inertial vectors, in the `frame`: by default the planet-fixed one at `sidereal_time` 0, with an `epoch` the equator and \
+                       origin of date.");
+    let frame = frame(object);
+    let position = position(object);
+    let velocity = object
+        .field("velocity", "Velocity")
+        .doc("Inertial velocity [x, y, z], m/s; relative to the rotating planet at most 1e6.")
+        .unit("m/s")
+        .vector(Bound::FINITE);
+    let sidereal = sidereal_of_frame(object, frame, has_epoch);
+    let coordinates = Coordinates::Eci(Inertial { position: position?.into(), velocity: velocity?.into() });
+    Some(State { coordinates, frame: Some(frame?), sidereal })
+}
+
+fn orbital_elements(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named("OrbitalElements", "Classical orbital elements in the inertial frame `frame`.");
+    let frame = frame(object);
+    let semi_major_axis = object
+        .field("semi_major_axis", "Semi-major axis")
+        .doc("m; positive below eccentricity 1, negative above. Exactly one of `semi_major_axis` and `semi_latus_rectum`.")
+        .unit("m")
+        .optional()
+        .number(Bound::FINITE);
+    let semi_latus_rectum = object
+        .field("semi_latus_rectum", "Semi-latus rectum")
+        .doc("m; the only size that a parabola has. Exactly one of `semi_major_axis` and `semi_latus_rectum`.")
+        .unit("m")
+        .optional()
+        .number(Bound::POSITIVE);
+    object.exactly_one(&["semi_major_axis", "semi_latus_rectum"]);
+    let eccentricity = object
+        .field("eccentricity", "Eccentricity")
+        .doc("0 a circle, below 1 an ellipse, 1 a parabola, above a hyperbola.")
+        .number(Bound::NON_NEGATIVE);
+    let inclination = object
+        .field("inclination", "Inclination")
+        .doc("Of the orbit's angular momentum to the pole, in [0, π] (180°).")
+        .angle(Bound::HALF_TURN);
+    let raan = object
+        .field("raan", "Ascending node (RAAN)")
+        .doc("Right ascension of the ascending node, within ±2π (±360°); answers give [0, 2π).")
+        .angle(Bound::TURN);
+    let argument_of_periapsis = object
+        .field("argument_of_periapsis", "Argument of periapsis")
+        .doc("From the ascending node to the periapsis, within ±2π (±360°); answers give [0, 2π).")
+        .angle(Bound::TURN);
+    let true_anomaly = object
+        .field("true_anomaly", "True anomaly")
+        .doc("From the periapsis to the vehicle, within ±2π (±360°); answers give [0, 2π). Exactly one of `true_anomaly` and `mean_anomaly`.")
+        .optional()
+        .angle(Bound::TURN);
+    let mean_anomaly = object
+        .field("mean_anomaly", "Mean anomaly")
+        .doc("The time since the periapsis as a part of that of a revolution, as an angle within ±2π (±360°); of bound orbits (eccentricity below \
+              1). Exactly one of `true_anomaly` and `mean_anomaly`.")
+        .optional()
+        .angle(Bound::TURN);
+    object.exactly_one(&["true_anomaly", "mean_anomaly"]);
+    let sidereal = sidereal_of_frame(object, frame, has_epoch);
+    object.condition(|| {
+        let bound = json!({"properties": {"eccentricity": {"exclusiveMaximum": 1}}});
+        json!({"if": {"required": ["mean_anomaly"]}, "then": bound})
+    });
+    let by_axis = semi_major_axis.map(OrbitShape::SemiMajorAxis);
+    let coordinates = Coordinates::OrbitalElements {
+        shape: semi_latus_rectum.map(OrbitShape::SemiLatusRectum).or(by_axis)?,
+        eccentricity: eccentricity?,
+        inclination: inclination?,
+        raan: raan?,
+        argument_of_periapsis: argument_of_periapsis?,
+        anomaly: true_anomaly.map(Anomaly::True).or(mean_anomaly.map(Anomaly::Mean))?,
+    };
+    Some(State { coordinates, frame: Some(frame?), sidereal })
+}
+
+fn inertial_flight_path(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named(
+        "InertialFlightPath",
+        "A place on the rotating planet and the inertial velocity there, against the geocentric horizontal: the entry interface as flight reports \
+         quote it.",
+    );
+    let height = height(object);
+    let longitude = object
+        .field("longitude", "Longitude")
+        .doc("Planet-fixed, east positive, within ±2π (±360°).")
+        .angle(Bound::TURN);
+    let geocentric_latitude = object
+        .field("geocentric_latitude", "Latitude, geocentric")
+        .doc("Within ±π/2 (±90°).")
+        .angle(Bound::QUARTER_TURN);
+    let inertial_speed = object
+        .field("inertial_speed", "Inertial speed")
+        .doc("Magnitude of the inertial velocity, m/s; relative to the rotating planet at most 1e6.")
+        .unit("m/s")
+        .number(Bound::NON_NEGATIVE);
+    let inertial_flight_path_angle = object
+        .field("inertial_flight_path_angle", "Inertial flight-path angle")
+        .doc(
+            "Of the inertial velocity above the local horizontal (the plane normal to the radius), within ±π/2 (±90°).",
+        )
+        .angle(Bound::QUARTER_TURN);
+    let inertial_heading = object
+        .field("inertial_heading", "Inertial heading")
+        .doc("Of the inertial velocity, from east (0) towards north (π/2), within ±2π (±360°). Exactly one of `inertial_heading` and \
+              `inertial_azimuth`.")
+        .optional()
+        .angle(Bound::TURN);
+    let inertial_azimuth = object
+        .field("inertial_azimuth", "Inertial azimuth")
+        .doc("Of the inertial velocity, clockwise from north, within ±2π (±360°). Exactly one of `inertial_heading` and `inertial_azimuth`.")
+        .optional()
+        .angle(Bound::TURN);
+    object.exactly_one(&["inertial_heading", "inertial_azimuth"]);
+    let sidereal = sidereal(object, has_epoch);
+    let coordinates = Coordinates::InertialFlightPath {
+        height: height?,
+        longitude: longitude?,
+        geocentric_latitude: geocentric_latitude?,
+        inertial_speed: inertial_speed?,
+        inertial_flight_path_angle: inertial_flight_path_angle?,
+        inertial_heading: inertial_heading.or(inertial_azimuth.map(from_azimuth))?,
+    };
+    Some(State { coordinates, frame: None, sidereal })
+}
+
+/// The heading of an azimuth, rad.
+fn from_azimuth(azimuth: f64) -> f64 {
+    std::f64::consts::FRAC_PI_2 - azimuth
+}
+
+/// The height of a place on the geocentric horizontal.
+fn height(object: &mut Object) -> Option<Height> {
+    let radius = object
+        .field("radius", "Radius")
+        .doc("Distance from the planet's centre, m. Exactly one of `radius` and `altitude`.")
+        .unit("m")
+        .optional()
+        .number(Bound::RADIUS);
+    let altitude = object
+        .field("altitude", "Altitude")
+        .doc("Height above the planet's shape along the radius vector, m. Exactly one of `radius` and `altitude`.")
+        .unit("m")
+        .optional()
+        .number(Bound::DISTANCE);
+    object.exactly_one(&["radius", "altitude"])?;
+    radius.map(Height::Radius).or(altitude.map(Height::Altitude))
+}
+
+fn position(object: &mut Object) -> Option<[f64; 3]> {
+    object
+        .field("position", "Position")
+        .doc("Position [x, y, z], m, each within ±1e12.")
+        .unit("m")
+        .vector(Bound::DISTANCE)
+}
+
+/// The words for inertial frames.
+pub const FRAMES: Words<Frame> = Words {
+    name: "Frame",
+    doc: "An inertial frame.",
+    words: &[
+        word("date", Frame::Date, "of date")
+            .doc("The planet's equator, from which the planet is turned by the sidereal time; with an epoch on the Earth, the equator and the \
+                  celestial intermediate origin of date."),
+        word("teme", Frame::Teme, "TEME (SGP4)")
+            .doc("True equator and mean equinox of date: that of SGP4 and its two-line elements."),
+        word("gcrf", Frame::Gcrf, "GCRF (J2000)")
+            .doc("The geocentric celestial reference frame, from which J2000 differs by less than 0.1 arc seconds."),
+    ],
+};
+
+fn frame(object: &mut Object) -> Option<Frame> {
+    object
+        .field("frame", "Inertial frame")
+        .doc("The inertial frame. `teme` and `gcrf` need an `epoch` from 1900 to 2100 and an Earth, and no sidereal time or angle; they are good to \
+              10 m at the surface, but for polar motion (18 m at most) and UT1-UTC (0.9 s at most, 420 m), which are neglected.")
+        .default("date")
+        .word(&FRAMES)
+}
+
+/// The sidereal time or angle, which is for the frame of date alone.
+fn sidereal_of_frame(object: &mut Object, frame: Option<Frame>, has_epoch: bool) -> Sidereal {
+    let Some(of_epoch) = frame.filter(|frame| *frame != Frame::Date) else {
+        let sidereal = sidereal(object, has_epoch);
+        let absent = json!({"properties": {"sidereal_time": false, "sidereal_angle": false}});
+        object.condition(|| json!({"if": frames_of_epoch(), "then": absent}));
+        return sidereal;
+    };
+    for name in ["sidereal_time", "sidereal_angle"] {
+        if object.has(name) {
+            let frame = FRAMES.of(of_epoch);
+            object.fault_of(name, format!("must be left out with the frame {frame:?}, whose angle the epoch gives"));
+        }
+    }
+    Sidereal::default()
+}
+
+fn sidereal(object: &mut Object, has_epoch: bool) -> Sidereal {
+    let has_angle = object.has("sidereal_angle");
+    if !has_epoch && !has_angle {
+        object.fill("sidereal_time", json!(0));
+    }
+    let time = object
+        .field("sidereal_time", "Sidereal time")
+        .doc("When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned, within ±1e9. Default 0, or from the \
+              `epoch`. At most one of `sidereal_time` and `sidereal_angle`.")
+        .unit("s")
+        .optional()
+        .number_or_text("SiderealTime", Bound::SIDEREAL_TIME, epoch::sidereal_time_schema, SiderealTime::read);
+    let angle = object
+        .field("sidereal_angle", "Sidereal angle")
+        .doc("The same as an angle: from the inertial frame to the planet-fixed one, eastwards, within ±2π (±360°).")
+        .optional()
+        .angle_as_given(Bound::TURN);
+    object.condition(|| json!({"not": {"required": ["sidereal_time", "sidereal_angle"]}}));
+    if has_angle && object.has("sidereal_time") {
+        object.fault::<()>("must have at most one of sidereal_time, sidereal_angle, got both");
+    }
+    Sidereal { time, angle }
+}
+
+/// The condition that a state is in a frame that the epoch turns.
+fn frames_of_epoch() -> Value {
+    json!({"properties": {"frame": {"enum": ["teme", "gcrf"]}}, "required": ["frame"]})
+}
+
+/// What an inertial state, in the field of this name, asks of the epoch and of the planet beside it.
+pub fn inertial_conditions(object: &mut Object, state: &str) {
+    let of = |schema: Value| json!({"properties": {(state): schema}, "required": [state]});
+    let custom = json!({"properties": {"model": {"const": "custom"}}, "required": ["model"]});
+    let on_custom = json!({"properties": {"planet": custom}, "required": ["planet"]});
+    let inertial = json!({"properties": {"type": {"enum": ["eci", "orbital_elements"]}}, "required": ["type"]});
+    let turned = json!({"anyOf": [{"required": ["sidereal_time"]}, {"required": ["sidereal_angle"]}]});
+    object.condition(|| json!({"if": of(frames_of_epoch()), "then": {"required": ["epoch"], "not": on_custom}}));
+    object.condition(|| json!({"if": {"required": ["epoch"], "allOf": [on_custom, of(inertial)]}, "then": of(turned)}));
+}
