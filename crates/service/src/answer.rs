@@ -1,11 +1,12 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
 use std::io::{self, ErrorKind, Write};
+use std::rc::Rc;
 use std::time::Instant;
 
 use reentry::Interrupt;
 use reentry::integrate::Statistics;
-use reentry::sensitivity::sensitivities;
+use reentry::sensitivity::{self, Output, Slopes, Variation, slopes};
 use reentry::simulate::{SimulationError, simulate as fly};
 use reentry::trajectory::{FlightPoint, Trajectory};
 use reentry::verification::verify;
@@ -18,9 +19,12 @@ use crate::metrics::Work;
 use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
 use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
+use crate::wire::dispersions::{Covariance, Dispersion};
 use crate::wire::events::Event;
+use crate::wire::numbers::Varied;
+use crate::wire::outputs::{KnownWhereMoved, OutputNumber};
 use crate::wire::scenario::{Job, Wanted};
-use crate::wire::sensitivities::Sensitivities;
+use crate::wire::sensitivities::{Asked, GivenSensitivities, Matrix, Method, Sensitivities};
 use crate::wire::track::Track;
 use crate::wire::trajectory::{Extras, SimulateResponse};
 use crate::wire::verification::Verification;
@@ -79,24 +83,91 @@ fn wanted(format: Format) -> Wanted {
 }
 
 /// What a job asks for beyond the flight.
-fn extras(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Extras, SimulationError> {
+fn extras(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Extras, ApiError> {
     let request = &job.request;
-    let mut extras = Extras::default();
-    if request.sensitivities {
-        let core = sensitivities(flight, interrupt)?;
-        extras.sensitivities = Some(Sensitivities::from_core(&core, request.angle_unit));
-    }
+    let mut extras = Extras {
+        sensitivities: sensitivities(job, flight, interrupt)?,
+        covariance: covariance(job, flight, interrupt)?,
+        ..Extras::default()
+    };
     if request.verify {
         match verify(&job.scenario, flight, interrupt) {
             Ok(core) => {
                 let has_thrust = request.events.iter().any(Event::changes_thrust);
                 extras.verification = Some(Verification::from_core(core, has_thrust));
             }
-            Err(error @ SimulationError::Interrupted { .. }) => return Err(error),
+            Err(error @ SimulationError::Interrupted { .. }) => return Err(error.into()),
             Err(error) => extras.unverified = Some(error),
         }
     }
     Ok(extras)
+}
+
+/// The derivatives for which a job asks.
+fn sensitivities(
+    job: &Job,
+    flight: &Trajectory,
+    interrupt: &dyn Interrupt,
+) -> Result<Option<GivenSensitivities>, ApiError> {
+    let request = &job.request;
+    let of = match &request.sensitivities {
+        Asked::Nothing => return Ok(None),
+        Asked::OfTheEnd => {
+            let core = sensitivity::sensitivities(flight, interrupt)?;
+            let of_the_end = Sensitivities::from_core(&core, request.angle_unit);
+            return Ok(Some(GivenSensitivities::OfTheEnd(Box::new(of_the_end))));
+        }
+        Asked::Matrix { of, .. } => of,
+    };
+    let Some(numbers) = &job.numbers else { return Ok(None) };
+    let numbers = request.sensitivities.variations(numbers, interrupt).map_err(ApiError::Invalid)?;
+    if interrupt.is_raised() {
+        return Err(ApiError::Interrupted);
+    }
+    let moved = numbers.iter().map(|number| number.varied.known.clone()).collect();
+    let known = Rc::new(KnownWhereMoved { flight: request.known(), moved });
+    let outputs: Vec<_> =
+        of.iter().flat_map(|output| output.numbers(request.angle_unit, &request.events, &known)).collect();
+    let variations: Vec<_> = numbers.iter().map(|number| number.varied.variation.clone()).collect();
+    let slopes = slopes_of(flight, &variations, &outputs, interrupt)?;
+    let case = job.scenario.case();
+    let method = |variation: &Variation| {
+        if variation.changes_models(case) { Method::Differences } else { Method::Exact }
+    };
+    let methods: Vec<_> = variations.iter().map(method).collect();
+    Ok(Some(GivenSensitivities::Matrix(Matrix::new(&outputs, numbers, slopes, &methods))))
+}
+
+/// The covariance for which a job asks.
+fn covariance(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Option<Covariance>, ApiError> {
+    let request = &job.request;
+    let Some(numbers) = job.numbers.as_ref().filter(|_| !request.dispersions.is_empty()) else { return Ok(None) };
+    let varied = Dispersion::variations(&request.dispersions, numbers, interrupt);
+    let varied = varied.map_err(|fault| ApiError::Invalid(vec![fault]))?.into_iter();
+    let (variations, moved): (Vec<_>, Vec<_>) = varied.map(|Varied { variation, known }| (variation, known)).unzip();
+    if interrupt.is_raised() {
+        return Err(ApiError::Interrupted);
+    }
+    let known = Rc::new(KnownWhereMoved { flight: request.known(), moved });
+    let outputs = Dispersion::outputs(request.known(), flight);
+    let outputs: Vec<_> =
+        outputs.iter().flat_map(|output| output.numbers(request.angle_unit, &request.events, &known)).collect();
+    let slopes = slopes_of(flight, &variations, &outputs, interrupt)?;
+    Ok(Some(Covariance::new(&request.dispersions, request.angle_unit, request.known(), &slopes)))
+}
+
+/// The slopes of outputs by numbers that vary.
+fn slopes_of(
+    flight: &Trajectory,
+    variations: &[Variation],
+    outputs: &[OutputNumber],
+    interrupt: &dyn Interrupt,
+) -> Result<Vec<Slopes>, SimulationError> {
+    let outputs: Vec<_> = outputs
+        .iter()
+        .map(|OutputNumber { at, turn, value, .. }| Output { at: *at, value: value.as_ref(), turn: *turn })
+        .collect();
+    slopes(flight, variations, &outputs, interrupt)
 }
 
 /// The rows for which a job asks.

@@ -11,10 +11,11 @@ use utoipa::ToSchema;
 
 use super::control::is_given;
 use super::description::{self, Object, Words, word};
+use super::dispersions::Covariance;
 use super::reader::Fault;
 use super::scenario::{Job, SimulateRequest, Wanted, case};
 use super::schema::names;
-use super::sensitivities::Sensitivities;
+use super::sensitivities::GivenSensitivities;
 use super::state::Coordinates;
 use super::trajectory::Extras;
 use super::verification::Verification;
@@ -99,6 +100,7 @@ impl AnalyticJob {
         let (solution, request) = description::read(&mut tree, analytic_request)?;
         let sampling = request.output.sampling.clone();
         let mut misplaced = request.beyond_rows(wanted);
+        let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
         if request.output.columns.is_some() {
             let detail = "must not be given: this answer has columns of its own";
             misplaced.push(Fault::new("/output/columns", detail));
@@ -125,7 +127,7 @@ impl AnalyticJob {
         match (scenario, theory) {
             (Ok(scenario), Ok(theory)) if misplaced.is_empty() => {
                 let echo = request.echo.then_some(tree);
-                Ok(Self { job: Job { scenario, sampling, request, echo }, solution, theory })
+                Ok(Self { job: Job { scenario, sampling, request, echo, numbers }, solution, theory })
             }
             (scenario, theory) => {
                 let theory = theory.err().into_iter().flatten().map(|fault| fault_of(&fault, &request));
@@ -245,7 +247,11 @@ pub struct AnalyticResponse {
     /// The derivatives of the simulated flight's end, with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
-    pub sensitivities: Option<Sensitivities>,
+    pub sensitivities: Option<GivenSensitivities>,
+    /// How far the simulated flight's end scatters, to first order, with `dispersions`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub covariance: Option<Covariance>,
     /// How exact the simulated flight is, with `verify`; absent with the warning `not_verified` where the finer flight cannot be finished.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -314,6 +320,7 @@ impl AnalyticResponse {
                 ends_because: validity.end.to_string(),
             },
             sensitivities: extras.sensitivities,
+            covariance: extras.covariance,
             verification: extras.verification,
             warnings,
             case: echo,

@@ -365,6 +365,29 @@ impl Column {
         }
     }
 
+    /// Whether it is given where `output.columns` does not name it.
+    pub fn is_unasked(&self) -> bool {
+        !self.on_request
+    }
+
+    /// Whether it is a number, and not an instant.
+    pub fn is_number(&self) -> bool {
+        !matches!(self.quantity, ColumnSource::Utc)
+    }
+
+    /// Whether it is an angle, which may go around.
+    pub fn turns(&self) -> bool {
+        matches!(self.quantity, ColumnSource::Angle(_) | ColumnSource::Turn(_) | ColumnSource::OrbitTurn(_))
+    }
+
+    /// Its number at a point of the flight, in the unit of the request; none where there is none.
+    pub fn number(&self, point: &FlightPoint, unit: AngleUnit, known: &Known) -> Option<f64> {
+        match self.of(point, unit, known) {
+            Cell::Number(number) => Some(number),
+            Cell::Instant(_) | Cell::Nothing => None,
+        }
+    }
+
     /// The schema of a value.
     fn schema(&self) -> ObjectBuilder {
         let types = |kind| SchemaType::from_iter([kind, Type::Null]);

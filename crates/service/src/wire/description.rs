@@ -584,6 +584,18 @@ impl Field<'_, '_, '_> {
         self.take(|_| schema::list(&json!({"type": "string"}), [0, most]), |reader, name| reader.strings(name, most))
     }
 
+    /// Text, or texts, one or more and so many at most.
+    pub fn text_or_texts(self, most: usize) -> Option<Vec<String>> {
+        let texts = || schema::list(&json!({"type": "string"}), [1, most]);
+        self.take(
+            |_| json!({"oneOf": [{"type": "string"}, texts()]}),
+            |reader, name| match reader.required(name)? {
+                Value::String(text) => Some(vec![text.clone()]),
+                _ => reader.strings(name, most),
+            },
+        )
+    }
+
     /// True or false.
     pub fn boolean(self) -> Option<bool> {
         self.value(|| json!({"type": "boolean"}), reader::boolean)
@@ -600,6 +612,11 @@ impl Field<'_, '_, '_> {
             |schema| words.component(schema),
             |reader, name| reader.word(name, &words.all()).map(|chosen| words.words[chosen].meaning),
         )
+    }
+
+    /// One of several names; its index.
+    pub fn name(self, names: &[&'static str]) -> Option<usize> {
+        self.take(|_| schema::words(names), |reader, name| reader.word(name, names))
     }
 
     /// Names out of several, one or more, none of them twice; their indices.
@@ -682,10 +699,10 @@ impl Field<'_, '_, '_> {
     }
 
     /// One of several words, or an object.
-    pub fn word_or<T: Copy>(
+    pub fn word_or<W: Copy + Into<T>, T>(
         self,
         union: &Union,
-        words: &Words<T>,
+        words: &Words<W>,
         read: impl Fn(&mut Object) -> Option<T>,
     ) -> Option<T> {
         self.take(
@@ -702,7 +719,32 @@ impl Field<'_, '_, '_> {
                     [only] => reader.only_word(name, only),
                     ref several => reader.word(name, several),
                 };
-                chosen.map(|chosen| words.words[chosen].meaning)
+                chosen.map(|chosen| words.words[chosen].meaning.into())
+            },
+        )
+    }
+
+    /// True or false, or an object.
+    pub fn boolean_or<T>(
+        self,
+        union: &Union,
+        from_boolean: impl Fn(bool) -> T,
+        read: impl Fn(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        self.take(
+            |schema| {
+                let boolean = json!({"type": "boolean", "description": union.simple});
+                let object = described(schema, &read);
+                schema.component(union.name, json!({"oneOf": [boolean, object], "description": union.doc}))
+            },
+            |reader, name| match reader.required(name)? {
+                Value::Object(_) => reader.object(name, |object| reading(object, &read)),
+                Value::Bool(boolean) => Some(from_boolean(*boolean)),
+                other => {
+                    let detail = format!("must be true, false or {}, got {}", union.object, reader::kind_of(other));
+                    reader.fault_of(name, detail);
+                    None
+                }
             },
         )
     }

@@ -10,11 +10,14 @@ use super::atmosphere::{Atmosphere, atmosphere};
 use super::columns::{COLUMNS, Column, Known};
 use super::control::control;
 use super::description::{self, Object, Words, word};
+use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
 use super::events::{Condition, Event, MOST_EVENTS, Surroundings, condition, event};
 use super::heating::{Heating, heating};
+use super::numbers::{MOST_VARIED, Numbers};
 use super::planet::{Planet, planet};
 use super::reader::Fault;
+use super::sensitivities::{Asked, asked};
 use super::shown::shown;
 use super::state::{State, inertial_conditions, state};
 use super::vehicle::vehicle;
@@ -28,7 +31,8 @@ pub struct SimulateRequest {
     pub name: Option<String>,
     pub angle_unit: AngleUnit,
     pub echo: bool,
-    pub sensitivities: bool,
+    pub sensitivities: Asked,
+    pub dispersions: Vec<Dispersion>,
     pub verify: bool,
     pub epoch: Option<Epoch>,
     pub planet: Planet,
@@ -102,6 +106,8 @@ pub struct Job {
     pub request: SimulateRequest,
     /// The request with every default filled in, if it asks for it.
     pub echo: Option<Value>,
+    /// The numbers of the request, where some are to vary.
+    pub numbers: Option<Numbers>,
 }
 
 impl Job {
@@ -121,6 +127,7 @@ impl Job {
             let detail = "must not be false: CSV and maps consist of the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
+        let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
         let scenario = match request.try_into_scenario() {
             Ok(scenario) if misplaced.is_empty() => scenario,
             scenario => return Err(scenario.err().into_iter().flatten().chain(misplaced).collect()),
@@ -130,7 +137,7 @@ impl Job {
             request.angle_unit = AngleUnit::Deg;
         }
         let echo = request.echo.then_some(tree);
-        Ok(Self { scenario, sampling, request, echo })
+        Ok(Self { scenario, sampling, request, echo, numbers })
     }
 }
 
@@ -147,6 +154,13 @@ pub fn simulate_request(object: &mut Object) -> Option<SimulateRequest> {
     request
 }
 
+/// Reads a request: its case, and what is known of its flight; none where it is not sound.
+fn known_and_case(mut tree: Value) -> Option<(Known, Case)> {
+    let request = description::read(&mut tree, simulate_request).ok()?;
+    let scenario = request.try_into_scenario().ok()?;
+    Some((request.known(), scenario.case().clone()))
+}
+
 /// The fields of a case.
 pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let given = ["angle_unit", "atmosphere"].map(|name| object.has(name));
@@ -157,12 +171,12 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .doc("Whether the answer repeats the request, with every default filled in, as `case`; CSV and maps have no place for it.")
         .default(false)
         .boolean();
-    let sensitivities = object
-        .field("sensitivities", "Sensitivities of the end")
-        .doc("Whether the answer has the derivatives of the flight's end by the numbers of the case, for the computing of about six flights. Not \
-              with CSV or on a map.")
-        .default(false)
-        .boolean();
+    let sensitivities = asked(object);
+    let dispersions = object
+        .field("dispersions", "Dispersions")
+        .doc("Numbers of the case that scatter: the answer then has the linear `covariance` of the flight's end. Not with CSV or on a map.")
+        .optional()
+        .objects([0, MOST_VARIED], dispersion);
     let verify = object
         .field("verify", "Verify the accuracy")
         .doc("Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV or on a map.")
@@ -220,6 +234,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         angle_unit: angle_unit?,
         echo: echo?,
         sensitivities: sensitivities?,
+        dispersions: dispersions.unwrap_or_default(),
         verify: verify?,
         epoch,
         planet: planet?,
@@ -368,12 +383,37 @@ fn solver(object: &mut Object) -> Option<Solver> {
 }
 
 impl SimulateRequest {
+    /// The numbers of this request, of which `tree` has every default, where some are to vary; what is wrong with those goes to `faults`.
+    pub(super) fn numbers_that_vary(
+        &self,
+        tree: &Value,
+        faults: &mut Vec<Fault>,
+    ) -> Result<Option<Numbers>, Vec<Fault>> {
+        if !matches!(self.sensitivities, Asked::Matrix { .. }) && self.dispersions.is_empty() {
+            return Ok(None);
+        }
+        let mut tree = tree.clone();
+        if let Some(tree) = tree.as_object_mut() {
+            // Of /analytic, and no part of the case.
+            tree.shift_remove("solution");
+        }
+        let (_, fields) = description::read_with_numbers(&mut tree, simulate_request)?;
+        let numbers = Numbers::new(tree, fields, known_and_case);
+        faults.extend(self.sensitivities.faults(self.known(), &self.events, &numbers));
+        faults.extend(Dispersion::faults(&self.dispersions, &numbers));
+        Ok(Some(numbers))
+    }
+
     /// What is asked for and has no place where the rows alone are wanted.
     pub(super) fn beyond_rows(&self, wanted: Wanted) -> Vec<Fault> {
-        let asked = [("/sensitivities", self.sensitivities), ("/verify", self.verify)];
-        let misplaced = asked.into_iter().filter(|(_, asked)| *asked && wanted != Wanted::Answer);
-        let detail = "must not be true: CSV and maps do not have it";
-        misplaced.map(|(pointer, _)| Fault::new(pointer, detail)).collect()
+        let asked = [
+            ("/sensitivities", self.sensitivities.is_something(), "true"),
+            ("/verify", self.verify, "true"),
+            ("/dispersions", !self.dispersions.is_empty(), "given"),
+        ];
+        let misplaced = asked.into_iter().filter(|(_, asked, _)| *asked && wanted != Wanted::Answer);
+        let detail = |how| format!("must not be {how}: CSV and maps do not have it");
+        misplaced.map(|(pointer, _, how)| Fault::new(pointer, detail(how))).collect()
     }
 
     /// Columns that are asked for and need what the models do not know.

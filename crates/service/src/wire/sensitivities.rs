@@ -1,11 +1,212 @@
-//! The derivatives of a flight's end, in the units of the request.
+//! The derivatives of a flight, in the units of the request.
 
+use reentry::Interrupt;
 use reentry::coordinates::FlightPath;
-use reentry::sensitivity::{Gradient as CoreGradient, Sensitivities as CoreSensitivities};
+use reentry::sensitivity::{Gradient as CoreGradient, Sensitivities as CoreSensitivities, Slopes};
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::AngleUnit;
+use super::columns::Known;
+use super::description::{Object, Union};
+use super::events::Event;
+use super::numbers::{Change, MOST_VARIED, Numbers, Varied, immovable};
+use super::outputs::{FlightOutput, OutputNumber, output};
+use super::reader::Fault;
+
+/// Whether a request asks for derivatives, and for which.
+#[derive(Clone, Debug)]
+pub enum Asked {
+    /// For none.
+    Nothing,
+    /// For those of the flight's end by a fixed list of numbers.
+    OfTheEnd,
+    /// For those of outputs by numbers.
+    Matrix {
+        /// The outputs.
+        of: Vec<FlightOutput>,
+        /// The pointers of the numbers.
+        to: Vec<String>,
+    },
+}
+
+const SENSITIVITIES: Union = Union {
+    name: "AskedSensitivities",
+    doc: "Which derivatives of the flight the answer has.",
+    simple: "`true`: those of the flight's end by a fixed list of numbers, for the computing of about six flights.",
+    object: "an object with outputs and numbers",
+};
+
+/// The greatest count of outputs.
+const MOST_OUTPUTS: usize = 64;
+
+/// The field `sensitivities` of a request.
+pub(super) fn asked(object: &mut Object) -> Option<Asked> {
+    object
+        .field("sensitivities", "Sensitivities").doc("Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV or on \
+             a map.")
+        .default(false)
+        .boolean_or(&SENSITIVITIES, |asked| if asked { Asked::OfTheEnd } else { Asked::Nothing }, matrix)
+}
+
+fn matrix(object: &mut Object) -> Option<Asked> {
+    object.named("SensitivityMatrix", "The derivatives of outputs by numbers of the case.");
+    let of = object.field("of", "Of").doc("The outputs.").objects([1, MOST_OUTPUTS], output);
+    let to = object
+        .field("to", "To").doc("JSON pointers of numbers in this request, as `echo` shows it; of a list of numbers each is meant. Together at most 64 numbers.")
+        .texts(MOST_VARIED);
+    Some(Asked::Matrix { of: of?, to: to? })
+}
+
+impl Asked {
+    /// Whether there is anything asked for.
+    pub fn is_something(&self) -> bool {
+        !matches!(self, Self::Nothing)
+    }
+
+    /// What is wrong with the outputs and the pointers, in a request of which so much is known, and with these events.
+    pub(super) fn faults(&self, known: Known, events: &[Event], numbers: &Numbers) -> Vec<Fault> {
+        let Self::Matrix { of, to } = self else { return Vec::new() };
+        let place = |(index, output): (usize, &FlightOutput)| {
+            output.fault(&format!("/sensitivities/of/{index}"), known, events)
+        };
+        let mut faults: Vec<_> = of.iter().enumerate().filter_map(place).collect();
+        let mut seen: Vec<&str> = Vec::new();
+        for (index, pointer) in to.iter().enumerate() {
+            let at = format!("/sensitivities/to/{index}");
+            match numbers.at(pointer) {
+                Err(detail) => faults.push(Fault::new(at, detail)),
+                Ok(fields) => {
+                    if let Some(twice) = fields.iter().find(|field| seen.contains(&field.pointer.as_str())) {
+                        faults.push(Fault::new(at, format!("{} is given twice", twice.pointer)));
+                    }
+                    seen.extend(fields.iter().map(|field| field.pointer.as_str()));
+                }
+            }
+        }
+        if seen.len() > MOST_VARIED {
+            let detail = format!("must be pointers of at most {MOST_VARIED} numbers together, got {}", seen.len());
+            faults.push(Fault::new("/sensitivities/to", detail));
+        }
+        faults
+    }
+
+    /// The numbers by which there are derivatives, each with its variation and what is known where it is moved; not all of them once
+    /// `interrupt` is raised.
+    ///
+    /// # Errors
+    /// With the numbers that cannot be moved.
+    pub fn variations(&self, numbers: &Numbers, interrupt: &dyn Interrupt) -> Result<Vec<VariedNumber>, Vec<Fault>> {
+        let Self::Matrix { to, .. } = self else { return Ok(Vec::new()) };
+        let mut faults = Vec::new();
+        let mut variations = Vec::new();
+        for (index, pointer) in to.iter().enumerate() {
+            for field in numbers.at(pointer).unwrap_or_default() {
+                if interrupt.is_raised() {
+                    break;
+                }
+                match numbers.variation(&[field], Change::Offset) {
+                    Some(varied) => variations.push(VariedNumber {
+                        pointer: field.pointer.clone(),
+                        value: numbers.value(field),
+                        varied,
+                    }),
+                    None => {
+                        faults.push(Fault::new(format!("/sensitivities/to/{index}"), immovable(&field.pointer)));
+                    }
+                }
+            }
+        }
+        if faults.is_empty() { Ok(variations) } else { Err(faults) }
+    }
+}
+
+/// A number of a case that varies.
+#[derive(Clone, Debug)]
+pub struct VariedNumber {
+    /// Its pointer.
+    pub pointer: String,
+    /// Its value, in the unit of the request.
+    pub value: f64,
+    /// How it varies.
+    pub varied: Varied,
+}
+
+/// The derivatives for which a request asks.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum GivenSensitivities {
+    /// With `"sensitivities": true`.
+    OfTheEnd(Box<Sensitivities>),
+    /// With `of` and `to`.
+    Matrix(Matrix),
+}
+
+/// The derivatives of outputs by numbers of the case, each by itself, in the units of the request; the steps of the integration are kept, and
+/// what happens on the way moves along.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct Matrix {
+    /// The outputs: one for each row. A site has two, `east` and `north` of it, m.
+    pub of: Vec<MatrixRow>,
+    /// The numbers: one for each column.
+    pub to: Vec<MatrixColumn>,
+    /// The derivatives, row by row; null where there is none.
+    pub matrix: Vec<Vec<Option<f64>>>,
+}
+
+/// An output.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct MatrixRow {
+    /// The quantity; of a site `east` or `north`.
+    pub quantity: &'static str,
+    /// When it is taken, s; null where the flight has no such moment: an event that does not happen, or a time after the end.
+    #[schema(required = true)]
+    pub time: Option<f64>,
+    /// Its value; null where there is none.
+    #[schema(required = true)]
+    pub value: Option<f64>,
+}
+
+/// A number of the case.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct MatrixColumn {
+    /// Its pointer.
+    pub pointer: String,
+    /// Its value.
+    pub value: f64,
+    /// How its column was made.
+    pub method: Method,
+}
+
+/// How derivatives were made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// The number passes through the flight with its derivatives: good to about ten digits.
+    Exact,
+    /// The number is part of a model, whose forces are differenced with it at every state along the same steps; these differences are of
+    /// fourth order: good to about eight digits.
+    Differences,
+}
+
+impl Matrix {
+    /// The matrix of a flight.
+    pub fn new(outputs: &[OutputNumber], numbers: Vec<VariedNumber>, slopes: Vec<Slopes>, methods: &[Method]) -> Self {
+        let finite = |slope: f64| Some(slope).filter(|slope| slope.is_finite());
+        let rows = outputs.iter().zip(&slopes);
+        Self {
+            of: rows
+                .map(|(output, slopes)| MatrixRow { quantity: output.name, time: slopes.time, value: slopes.value })
+                .collect(),
+            to: numbers
+                .into_iter()
+                .zip(methods)
+                .map(|(VariedNumber { pointer, value, .. }, method)| MatrixColumn { pointer, value, method: *method })
+                .collect(),
+            matrix: slopes.into_iter().map(|row| row.slopes.into_iter().map(finite).collect()).collect(),
+        }
+    }
+}
 
 /// How the end of the flight changes with the numbers of the case, each by itself, in the units of the request.
 /// The steps of the integration are kept, and the impact moves along: these are the exact derivatives of what was computed.

@@ -11,10 +11,11 @@ use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::columns::{Columns, Row};
+use super::dispersions::Covariance;
 use super::planet::MODELS;
 use super::scenario::{FORMULATIONS, Job};
 use super::schema::names;
-use super::sensitivities::Sensitivities;
+use super::sensitivities::GivenSensitivities;
 use super::vehicle;
 use super::verification::Verification;
 use super::warning::Warning;
@@ -169,10 +170,12 @@ pub struct SolverReport {
 }
 
 /// What a request may ask for beyond the flight.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Extras {
     /// With `sensitivities`.
-    pub sensitivities: Option<Sensitivities>,
+    pub sensitivities: Option<GivenSensitivities>,
+    /// With `dispersions`.
+    pub covariance: Option<Covariance>,
     /// With `verify`.
     pub verification: Option<Verification>,
     /// Why the finer flight of the verification could not be finished.
@@ -221,7 +224,11 @@ pub struct SimulateResponse {
     /// The derivatives of the flight's end, with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
-    pub sensitivities: Option<Sensitivities>,
+    pub sensitivities: Option<GivenSensitivities>,
+    /// How far the flight's end scatters, to first order, with `dispersions`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub covariance: Option<Covariance>,
     /// How exact the flight is, with `verify`; absent with the warning `not_verified` where the finer flight cannot be finished.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -296,6 +303,7 @@ impl SimulateResponse {
             peaks: Peaks::from(flight.peaks()),
             phases,
             sensitivities: extras.sensitivities,
+            covariance: extras.covariance,
             verification: extras.verification,
             solver: SolverReport {
                 formulation: FORMULATIONS.of(request.solver.equations),

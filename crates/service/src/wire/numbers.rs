@@ -1,0 +1,138 @@
+//! The numbers of a request by their pointers, and the request with some of them moved.
+
+use std::cell::RefCell;
+
+use reentry::scenario::{Bound, Case};
+use reentry::sensitivity::Variation;
+use serde_json::{Value, json};
+
+use super::columns::Known;
+use super::reader::NumberField;
+use super::schema::ANGLE;
+use super::shown::shown;
+
+/// The greatest count of numbers that one request may vary: as many as [`Variation`]s.
+pub const MOST_VARIED: usize = 64;
+
+/// Parts of a request that are no part of its case: what they hold does not vary.
+const NO_PART_OF_THE_CASE: [&str; 6] =
+    ["/solver", "/output", "/angle_unit", "/sensitivities", "/dispersions", "/verify"];
+
+/// A request whose numbers may vary.
+#[derive(Clone, Debug)]
+pub struct Numbers {
+    /// The request, with every default filled in.
+    tree: Value,
+    /// In the order in which they were read.
+    fields: Vec<NumberField>,
+    /// Reads a request: its case, and what is known of its flight.
+    read: fn(Value) -> Option<(Known, Case)>,
+}
+
+/// Numbers that vary.
+#[derive(Clone, Debug)]
+pub struct Varied {
+    /// How they are moved.
+    pub variation: Variation,
+    /// What is known of the flights in which they are moved, by the variable.
+    pub known: Vec<(f64, Known)>,
+}
+
+/// How a number moves with a variable that is 0 where the number has its own value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// The variable is added.
+    Offset,
+    /// The number is multiplied by 1 and the variable.
+    Factor,
+}
+
+impl Numbers {
+    /// The numbers of a sound request, in which every default is filled in, and a function that reads such requests.
+    pub fn new(tree: Value, fields: Vec<NumberField>, read: fn(Value) -> Option<(Known, Case)>) -> Self {
+        Self { tree, fields, read }
+    }
+
+    /// The numbers to which a pointer points: one, or all of a list.
+    ///
+    /// # Errors
+    /// With what is wrong with the pointer.
+    pub fn at(&self, pointer: &str) -> Result<Vec<&NumberField>, String> {
+        let is_below =
+            |part: &&&str| pointer.strip_prefix(**part).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        if let Some(part) = NO_PART_OF_THE_CASE.iter().find(is_below) {
+            return Err(format!("must not point into {part}, which is no part of what flies"));
+        }
+        let is_there = |field: &&NumberField| match field.pointer.strip_prefix(pointer) {
+            Some("") => true,
+            Some(rest) => rest.starts_with('/') && rest.chars().all(|char| char == '/' || char.is_ascii_digit()),
+            None => false,
+        };
+        let found: Vec<_> = self.fields.iter().filter(is_there).collect();
+        if !found.is_empty() {
+            return Ok(found);
+        }
+        let got = match self.tree.pointer(pointer) {
+            Some(Value::Object(_)) => "an object".to_owned(),
+            Some(other) => shown(other),
+            None => "nothing".to_owned(),
+        };
+        Err(format!("must point to a number of the case, or to a list of numbers, got {got}"))
+    }
+
+    /// The value of a number, in the unit of the request.
+    pub fn value(&self, field: &NumberField) -> f64 {
+        self.tree.pointer(&field.pointer).and_then(Value::as_f64).unwrap_or_default()
+    }
+
+    /// The case with numbers moved by the same variable, and what is known of its flight; none where that is no sound request.
+    fn moved(&self, fields: &[&NumberField], change: Change, by: f64) -> Option<(Known, Case)> {
+        let mut tree = self.tree.clone();
+        for field in fields {
+            let number = tree.pointer_mut(&field.pointer)?;
+            let value = number.as_f64()?;
+            *number = json!(match change {
+                Change::Offset => value + by,
+                Change::Factor => value * (1.0 + by),
+            });
+        }
+        (self.read)(tree)
+    }
+
+    /// The variation that moves numbers together; none where they cannot be moved at all.
+    pub fn variation(&self, fields: &[&NumberField], change: Change) -> Option<Varied> {
+        let size = match change {
+            Change::Factor => 1.0,
+            Change::Offset => fields.iter().map(|field| self.size(field)).fold(0.0, f64::max),
+        };
+        let known = RefCell::new(Vec::new());
+        let variation = Variation::new(SMALL * size, |by| {
+            let (of_moved, case) = self.moved(fields, change, by)?;
+            known.borrow_mut().push((by, of_moved));
+            Some(case)
+        });
+        Some(Varied { variation: variation?, known: known.into_inner() })
+    }
+
+    /// The size of a number, to which its steps are small: its own, but of one that may be negative at least such that differences of what
+    /// it is added to, as an altitude is to a radius, are not lost in rounding.
+    fn size(&self, field: &NumberField) -> f64 {
+        let value = self.value(field).abs();
+        let Bound { minimum, .. } = field.bound;
+        let least = match field.unit {
+            ANGLE => 1.0,
+            "m" => 1e4,
+            "m/s" => 10.0,
+            _ => 1.0,
+        };
+        if minimum >= 0.0 && value > 0.0 { value } else { value.max(least) }
+    }
+}
+
+/// Why a number has no variation.
+pub fn immovable(pointer: &str) -> String {
+    format!("the number at {pointer} cannot be varied: with a little more or less of it the case is not sound")
+}
+
+/// A step that is small to a number, in parts of its size: differences of fourth order are then exact to some twelve digits.
+const SMALL: f64 = 1e-3;
