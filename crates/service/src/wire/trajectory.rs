@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 use super::AngleUnit;
 use super::columns::{Columns, Row};
 use super::planet::MODELS;
-use super::scenario::{FORMULATIONS, Job};
+use super::scenario::{FORMULATIONS, FlightRequest};
 use super::schema::names;
 use super::sensitivities::Sensitivities;
 use super::vehicle;
@@ -170,7 +170,7 @@ pub struct SolverReport {
 
 /// What a request may ask for beyond the flight.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Extras {
+pub struct RequestedAnalyses {
     /// With `sensitivities`.
     pub sensitivities: Option<Sensitivities>,
     /// With `verify`.
@@ -237,14 +237,20 @@ pub struct SimulateResponse {
 }
 
 impl SimulateResponse {
-    /// The answer to a job that was flown in `elapsed` seconds; `points` are the rows that it asks for.
-    pub fn new(job: Job, flight: &Trajectory, points: Option<Vec<FlightPoint>>, extras: Extras, elapsed: f64) -> Self {
-        let Job { request, echo, .. } = job;
+    /// The answer to a request whose flight was flown in `elapsed` seconds; `points` are the rows that it asks for.
+    pub fn new(
+        requested: FlightRequest,
+        flight: &Trajectory,
+        points: Option<Vec<FlightPoint>>,
+        analyses: RequestedAnalyses,
+        elapsed: f64,
+    ) -> Self {
+        let FlightRequest { request, echo, .. } = requested;
         let unit = request.angle_unit;
         let known = request.known();
         let row = |point| Row::new(point, unit, known);
         let statistics = flight.statistics();
-        let warnings = Warning::of(&request, flight, extras.unverified);
+        let warnings = Warning::of(&request, flight, analyses.unverified);
         let report = |EventPoint { event, before, after }| EventReport {
             index: event,
             name: request.events[event].name.clone(),
@@ -295,8 +301,8 @@ impl SimulateResponse {
             events,
             peaks: Peaks::from(flight.peaks()),
             phases,
-            sensitivities: extras.sensitivities,
-            verification: extras.verification,
+            sensitivities: analyses.sensitivities,
+            verification: analyses.verification,
             solver: SolverReport {
                 formulation: FORMULATIONS.of(request.solver.equations),
                 relative_tolerance: request.solver.relative_tolerance,
