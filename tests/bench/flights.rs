@@ -21,7 +21,7 @@ use reentry::trajectory::Sampling;
 use reentry::verification::verify;
 use reentry::{Case, FlightPath, PlanetFixed, Scenario, Solver, Stop, simulate};
 use reentry_service::wire::json;
-use reentry_service::wire::scenario::{Job, Wanted};
+use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
 use reentry_tests::cases::thesis_cases;
 use reentry_tests::timing::{medians, timed};
 use serde_json::{Value, json};
@@ -378,8 +378,8 @@ fn thesis_request(name: &str) -> Value {
     case.request
 }
 
-fn job(request: &Value) -> Job {
-    Job::try_from_tree(json::parse(request.to_string().as_bytes()).unwrap(), Wanted::Answer).unwrap()
+fn job(request: &Value) -> FlightRequest {
+    FlightRequest::try_from_tree(json::parse(request.to_string().as_bytes()).unwrap(), RequestedOutput::Answer).unwrap()
 }
 
 /// The equations in units of the planet's radius and circular speed, as `ode_solvers` has one tolerance for all components.

@@ -10,8 +10,8 @@ use reentry::trajectory::Sampling;
 use reentry::{Scenario, simulate};
 use reentry_service::wire::columns::Columns;
 use reentry_service::wire::json;
-use reentry_service::wire::scenario::{Job, Wanted};
-use reentry_service::wire::trajectory::{Extras, SimulateResponse};
+use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
+use reentry_service::wire::trajectory::{RequestedAnalyses, SimulateResponse};
 use reentry_tests::cases::thesis_cases;
 use reentry_tests::timing::{medians, timed};
 
@@ -54,11 +54,11 @@ fn line(name: &str) -> String {
 fn answered(name: &str) -> (Scenario, SimulateResponse) {
     let case = thesis_cases().into_iter().find(|case| case.name == name && case.model == "earth_wgs84").unwrap();
     let tree = json::parse(case.request.to_string().as_bytes()).unwrap();
-    let job = Job::try_from_tree(tree, Wanted::Answer).unwrap();
+    let job = FlightRequest::try_from_tree(tree, RequestedOutput::Answer).unwrap();
     let scenario = job.scenario.clone();
     let flight = simulate(&scenario, &AtomicBool::new(false)).unwrap();
     let points = flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap());
-    (scenario, SimulateResponse::new(job, &flight, Some(points), Extras::default(), 0.0))
+    (scenario, SimulateResponse::new(job, &flight, Some(points), RequestedAnalyses::default(), 0.0))
 }
 
 /// The rows as CSV.

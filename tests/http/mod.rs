@@ -27,6 +27,7 @@ mod limits;
 mod metrics;
 mod models;
 mod nesc;
+mod numbers;
 mod output;
 mod page;
 mod reference;

@@ -2,7 +2,7 @@
 
 use axum::http::StatusCode;
 use reentry::Case;
-use reentry_service::wire::scenario::{Job, Wanted};
+use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
 use reentry_tests::fuzzed::{is_of_default, without_warnings_of_defaults};
 use reentry_tests::service::Service;
 use serde_json::{Value, json};
@@ -149,7 +149,7 @@ fn the_core_has_the_defaults_of_the_contract() {
         "initial_state": {"type": "planet_relative", "altitude": 1e5, "longitude": 1, "geocentric_latitude": 0.5, "speed": 3000,
             "flight_path_angle": -0.5, "heading": 1},
     });
-    let job = Job::try_from_tree(request, Wanted::Answer).unwrap();
+    let job = FlightRequest::try_from_tree(request, RequestedOutput::Answer).unwrap();
     let case = job.scenario.case();
     assert_eq!(*case, Case::new(case.vehicle.clone(), case.initial_state));
 }

@@ -9,9 +9,9 @@ use reentry::scenario::{Bound, Case, Scenario, Solver};
 use reentry::simulate::{SimulationError, arrival};
 use reentry_service::error::ApiError;
 use reentry_service::format::Format;
-use reentry_service::wire::analytic::AnalyticJob;
+use reentry_service::wire::analytic::TheoryRequest;
 use reentry_service::wire::json::{elements, parse};
-use reentry_service::wire::scenario::{Job, Wanted};
+use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
 use reentry_service::{answer, document};
 use serde_json::{Value, json};
 
@@ -220,8 +220,10 @@ impl Endpoint {
     /// Whether a request is sound, and its flight takes many steps.
     fn is_long(self, tree: &Value) -> bool {
         let job = match self {
-            Self::Simulate => Job::try_from_tree(tree.clone(), Wanted::Answer),
-            Self::Analytic => AnalyticJob::try_from_tree(tree.clone(), Wanted::Answer).map(|analytic| analytic.job),
+            Self::Simulate => FlightRequest::try_from_tree(tree.clone(), RequestedOutput::Answer),
+            Self::Analytic => {
+                TheoryRequest::try_from_tree(tree.clone(), RequestedOutput::Answer).map(|theory| theory.flight)
+            }
         };
         let Ok(job) = job else { return false };
         let case = job.scenario.case().clone();

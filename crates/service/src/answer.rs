@@ -16,17 +16,17 @@ use sysinfo::{MemoryRefreshKind, System};
 use crate::error::ApiError;
 use crate::format::Format;
 use crate::metrics::Work;
-use crate::wire::analytic::{AnalyticJob, AnalyticResponse};
+use crate::wire::analytic::{AnalyticResponse, TheoryRequest};
 use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::dispersions::{Covariance, Dispersion};
 use crate::wire::events::Event;
 use crate::wire::numbers::Varied;
-use crate::wire::outputs::{KnownWhereMoved, OutputNumber};
-use crate::wire::scenario::{Job, Wanted};
+use crate::wire::outputs::{AvailableWhereMoved, OutputNumber};
+use crate::wire::scenario::{FlightRequest, RequestedOutput};
 use crate::wire::sensitivities::{Asked, GivenSensitivities, Matrix, Method, Sensitivities};
 use crate::wire::track::Track;
-use crate::wire::trajectory::{Extras, SimulateResponse};
+use crate::wire::trajectory::{RequestedAnalyses, SimulateResponse};
 use crate::wire::verification::Verification;
 
 /// The bytes of an answer, and what it cost.
@@ -43,18 +43,18 @@ pub struct Answer {
 /// # Errors
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
-    let job = Job::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
+    let request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
     let start = Instant::now();
-    let flight = fly(&job.scenario, interrupt)?;
+    let flight = fly(&request.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();
     if !flight.measure_ground_track(interrupt) {
         return Err(ApiError::Interrupted);
     }
     let mut held = Held::new(&flight, interrupt);
-    let points = rows(&job, &flight, row_limit, &mut held)?;
+    let points = rows(&request, &flight, row_limit, &mut held)?;
     let work = work(&flight, points.as_deref());
-    let extras = extras(&job, &flight, interrupt)?;
-    let response = SimulateResponse::new(job, &flight, points, extras, elapsed);
+    let analyses = analyses(&request, &flight, interrupt)?;
+    let response = SimulateResponse::new(request, &flight, points, analyses, elapsed);
     let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
     let mut out = Written::new(held);
     let written = match (format, &response.trajectory) {
@@ -74,42 +74,46 @@ fn work(flight: &Trajectory, points: Option<&[FlightPoint]>) -> Work {
     Work { steps, rejected_steps, evaluations, rows: points.map_or(0, <[_]>::len) as u64 }
 }
 
-fn wanted(format: Format) -> Wanted {
+fn requested_output(format: Format) -> RequestedOutput {
     match format {
-        Format::Json | Format::Ndjson => Wanted::Answer,
-        Format::Csv => Wanted::Rows,
-        Format::Geojson | Format::Kml | Format::Czml => Wanted::Map,
+        Format::Json | Format::Ndjson => RequestedOutput::Answer,
+        Format::Csv => RequestedOutput::Rows,
+        Format::Geojson | Format::Kml | Format::Czml => RequestedOutput::Map,
     }
 }
 
-/// What a job asks for beyond the flight.
-fn extras(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Extras, ApiError> {
-    let request = &job.request;
-    let mut extras = Extras {
-        sensitivities: sensitivities(job, flight, interrupt)?,
-        covariance: covariance(job, flight, interrupt)?,
-        ..Extras::default()
+/// What a request asks for beyond the flight.
+fn analyses(
+    requested: &FlightRequest,
+    flight: &Trajectory,
+    interrupt: &dyn Interrupt,
+) -> Result<RequestedAnalyses, ApiError> {
+    let request = &requested.request;
+    let mut analyses = RequestedAnalyses {
+        sensitivities: sensitivities(requested, flight, interrupt)?,
+        covariance: covariance(requested, flight, interrupt)?,
+        ..RequestedAnalyses::default()
     };
     if request.verify {
-        match verify(&job.scenario, flight, interrupt) {
+        match verify(&requested.scenario, flight, interrupt) {
             Ok(core) => {
                 let has_thrust = request.events.iter().any(Event::changes_thrust);
-                extras.verification = Some(Verification::from_core(core, has_thrust));
+                analyses.verification = Some(Verification::from_core(core, has_thrust));
             }
             Err(error @ SimulationError::Interrupted { .. }) => return Err(error.into()),
-            Err(error) => extras.unverified = Some(error),
+            Err(error) => analyses.unverified = Some(error),
         }
     }
-    Ok(extras)
+    Ok(analyses)
 }
 
-/// The derivatives for which a job asks.
+/// The derivatives for which a request asks.
 fn sensitivities(
-    job: &Job,
+    requested: &FlightRequest,
     flight: &Trajectory,
     interrupt: &dyn Interrupt,
 ) -> Result<Option<GivenSensitivities>, ApiError> {
-    let request = &job.request;
+    let request = &requested.request;
     let of = match &request.sensitivities {
         Asked::Nothing => return Ok(None),
         Asked::OfTheEnd => {
@@ -119,18 +123,18 @@ fn sensitivities(
         }
         Asked::Matrix { of, .. } => of,
     };
-    let Some(numbers) = &job.numbers else { return Ok(None) };
+    let Some(numbers) = &requested.numbers else { return Ok(None) };
     let numbers = request.sensitivities.variations(numbers, interrupt).map_err(ApiError::Invalid)?;
     if interrupt.is_raised() {
         return Err(ApiError::Interrupted);
     }
     let moved = numbers.iter().map(|number| number.varied.known.clone()).collect();
-    let known = Rc::new(KnownWhereMoved { flight: request.known(), moved });
+    let known = Rc::new(AvailableWhereMoved { flight: request.known(), moved });
     let outputs: Vec<_> =
         of.iter().flat_map(|output| output.numbers(request.angle_unit, &request.events, &known)).collect();
     let variations: Vec<_> = numbers.iter().map(|number| number.varied.variation.clone()).collect();
     let slopes = slopes_of(flight, &variations, &outputs, interrupt)?;
-    let case = job.scenario.case();
+    let case = requested.scenario.case();
     let method = |variation: &Variation| {
         if variation.changes_models(case) { Method::Differences } else { Method::Exact }
     };
@@ -138,17 +142,21 @@ fn sensitivities(
     Ok(Some(GivenSensitivities::Matrix(Matrix::new(&outputs, numbers, slopes, &methods))))
 }
 
-/// The covariance for which a job asks.
-fn covariance(job: &Job, flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Option<Covariance>, ApiError> {
-    let request = &job.request;
-    let Some(numbers) = job.numbers.as_ref().filter(|_| !request.dispersions.is_empty()) else { return Ok(None) };
+/// The covariance for which a request asks.
+fn covariance(
+    requested: &FlightRequest,
+    flight: &Trajectory,
+    interrupt: &dyn Interrupt,
+) -> Result<Option<Covariance>, ApiError> {
+    let request = &requested.request;
+    let Some(numbers) = requested.numbers.as_ref().filter(|_| !request.dispersions.is_empty()) else { return Ok(None) };
     let varied = Dispersion::variations(&request.dispersions, numbers, interrupt);
     let varied = varied.map_err(|fault| ApiError::Invalid(vec![fault]))?.into_iter();
     let (variations, moved): (Vec<_>, Vec<_>) = varied.map(|Varied { variation, known }| (variation, known)).unzip();
     if interrupt.is_raised() {
         return Err(ApiError::Interrupted);
     }
-    let known = Rc::new(KnownWhereMoved { flight: request.known(), moved });
+    let known = Rc::new(AvailableWhereMoved { flight: request.known(), moved });
     let outputs = Dispersion::outputs(request.known(), flight);
     let outputs: Vec<_> =
         outputs.iter().flat_map(|output| output.numbers(request.angle_unit, &request.events, &known)).collect();
@@ -170,12 +178,17 @@ fn slopes_of(
     slopes(flight, variations, &outputs, interrupt)
 }
 
-/// The rows for which a job asks.
-fn rows(job: &Job, flight: &Trajectory, limit: usize, held: &mut Held) -> Result<Option<Vec<FlightPoint>>, ApiError> {
-    let Some((sampling, pointer)) = &job.sampling else { return Ok(None) };
+/// The rows for which a request asks.
+fn rows(
+    requested: &FlightRequest,
+    flight: &Trajectory,
+    limit: usize,
+    held: &mut Held,
+) -> Result<Option<Vec<FlightPoint>>, ApiError> {
+    let Some((sampling, pointer)) = &requested.request.output.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
     let too_large = ApiError::NoMemory { rows: instants.len() as u64 };
-    let columns = job.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
+    let columns = requested.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
     let bytes = instants.len() * (size_of::<FlightPoint>() + columns * NUMBER);
     if instants.len() > ROWS_THAT_ALWAYS_FIT && available_memory().is_some_and(|available| available < bytes as u64) {
         return Err(too_large);
@@ -228,14 +241,14 @@ pub fn convert(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiErro
 /// # Errors
 /// When the case is not sound, the theory does not apply, and as [`simulate`] otherwise.
 pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
-    let analytic = AnalyticJob::try_from_tree(tree, wanted(format)).map_err(ApiError::Invalid)?;
-    let flight = fly(&analytic.job.scenario, interrupt)?;
+    let analytic = TheoryRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
+    let flight = fly(&analytic.flight.scenario, interrupt)?;
     let mut held = Held::new(&flight, interrupt);
-    let points = rows(&analytic.job, &flight, row_limit, &mut held)?.unwrap_or_default();
+    let points = rows(&analytic.flight, &flight, row_limit, &mut held)?.unwrap_or_default();
     let work = work(&flight, Some(&points));
-    let extras = extras(&analytic.job, &flight, interrupt)?;
+    let analyses = analyses(&analytic.flight, &flight, interrupt)?;
     let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
-    let response = AnalyticResponse::new(analytic, &flight, &points, comparison, extras);
+    let response = AnalyticResponse::new(analytic, &flight, &points, comparison, analyses);
     let mut out = Written::new(held);
     let written =
         if format == Format::Csv { response.write_csv(&mut out) } else { serde_json::to_writer(&mut out, &response) };

@@ -1,7 +1,8 @@
 //! The JSON of the API and its translation to and from the core; angles and calendars are converted here and nowhere else.
 //!
-//! A request is parsed to a tree ([`json::parse`]), read into the types of this module with every fault noted
-//! ([`reader::read`]), and translated to a core type, whose own checks see what concerns several fields.
+//! A request is parsed to a tree ([`json::parse`]) and read by the descriptions of its objects, with every fault noted
+//! ([`description::read`]). The descriptions yield the core's types, whose own checks see what concerns several fields, and they write
+//! the schemas of the requests ([`request_schemas`]).
 
 pub mod description;
 pub mod json;

@@ -13,11 +13,11 @@ use super::control::is_given;
 use super::description::{self, Object, Words, word};
 use super::dispersions::Covariance;
 use super::reader::Fault;
-use super::scenario::{Job, SimulateRequest, Wanted, case};
+use super::scenario::{FlightRequest, RequestedOutput, SimulateRequest, case};
 use super::schema::names;
 use super::sensitivities::GivenSensitivities;
 use super::state::Coordinates;
-use super::trajectory::Extras;
+use super::trajectory::RequestedAnalyses;
 use super::verification::Verification;
 use super::warning::Warning;
 use super::{Angle, AngleUnit};
@@ -82,24 +82,23 @@ fn conditions_of_theories() -> Value {
 
 /// A sound request: a case that can be flown, and a theory that applies to it.
 #[derive(Debug)]
-pub struct AnalyticJob {
+pub struct TheoryRequest {
     /// What to fly.
-    pub job: Job,
+    pub flight: FlightRequest,
     /// The theory that was asked for.
     pub solution: Solution,
     /// The theory for the case.
     pub theory: Theory,
 }
 
-impl AnalyticJob {
+impl TheoryRequest {
     /// Parses and checks a request.
     ///
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
-    pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
+    pub fn try_from_tree(mut tree: Value, output: RequestedOutput) -> Result<Self, Vec<Fault>> {
         let (solution, request) = description::read(&mut tree, analytic_request)?;
-        let sampling = request.output.sampling.clone();
-        let mut misplaced = request.beyond_rows(wanted);
+        let mut misplaced = request.beyond_rows(output);
         let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
         if request.output.columns.is_some() {
             let detail = "must not be given: this answer has columns of its own";
@@ -108,7 +107,7 @@ impl AnalyticJob {
         if request.heating.is_some() {
             misplaced.push(Fault::new("/heating", "must not be given: the theories know no heating"));
         }
-        if sampling.is_none() {
+        if request.output.sampling.is_none() {
             let detail = "must not be false: the predictions are made at the rows of the flight";
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
@@ -127,7 +126,7 @@ impl AnalyticJob {
         match (scenario, theory) {
             (Ok(scenario), Ok(theory)) if misplaced.is_empty() => {
                 let echo = request.echo.then_some(tree);
-                Ok(Self { job: Job { scenario, sampling, request, echo, numbers }, solution, theory })
+                Ok(Self { flight: FlightRequest { scenario, request, echo, numbers }, solution, theory })
             }
             (scenario, theory) => {
                 let theory = theory.err().into_iter().flatten().map(|fault| fault_of(&fault, &request));
@@ -265,15 +264,15 @@ pub struct AnalyticResponse {
 }
 
 impl AnalyticResponse {
-    /// The answer to a job that was flown; `points` are the rows that it asks for.
+    /// The answer to a request whose flight was flown; `points` are the rows that it asks for.
     pub fn new(
-        job: AnalyticJob,
+        theory: TheoryRequest,
         flight: &Trajectory,
         points: &[FlightPoint],
         comparison: Comparison,
-        extras: Extras,
+        analyses: RequestedAnalyses,
     ) -> Self {
-        let AnalyticJob { job: Job { request, echo, .. }, solution, .. } = job;
+        let TheoryRequest { flight: FlightRequest { request, echo, .. }, solution, .. } = theory;
         let unit = request.angle_unit;
         let Comparison { predictions, validity } = comparison;
         let simulated = Simulated {
@@ -295,7 +294,7 @@ impl AnalyticResponse {
             flight_path_angle: angles.into_iter().map(|angle| angle.map(|angle| unit.from_radians(angle))).collect(),
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
-        let mut warnings = Warning::of(&request, flight, extras.unverified);
+        let mut warnings = Warning::of(&request, flight, analyses.unverified);
         if is_given(&request.control.bank_angle) {
             warnings.push(Warning::bank_left_out());
         }
@@ -319,9 +318,9 @@ impl AnalyticResponse {
                 to_altitude: validity.to_altitude,
                 ends_because: validity.end.to_string(),
             },
-            sensitivities: extras.sensitivities,
-            covariance: extras.covariance,
-            verification: extras.verification,
+            sensitivities: analyses.sensitivities,
+            covariance: analyses.covariance,
+            verification: analyses.verification,
             warnings,
             case: echo,
         }

@@ -23,13 +23,13 @@ pub struct Column {
     pub description: &'static str,
     /// Whether it is given only where `output.columns` names it.
     on_request: bool,
-    needs: Needs,
+    requirement: Requirement,
     quantity: ColumnSource,
 }
 
 /// What a case must have for a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Needs {
+enum Requirement {
     Nothing,
     Temperature,
     SpeedOfSound,
@@ -60,7 +60,7 @@ enum ColumnSource {
 /// What there is to know at every instant of a flight beside its motion.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is asked for by its name")]
-pub struct Known {
+pub struct AvailableQuantities {
     /// Whether the atmosphere has a temperature.
     pub temperature: bool,
     /// Whether the atmosphere has a speed of sound.
@@ -89,14 +89,14 @@ struct Orbit {
 }
 
 impl Orbit {
-    fn of(point: &FlightPoint, known: &Known) -> Option<Self> {
-        let (elements, undefined) = point.orbital_elements(&known.planet, known.sidereal_angle)?;
-        Some(Self { elements, undefined, equatorial_radius: known.planet.equatorial_radius() })
+    fn of(point: &FlightPoint, available: &AvailableQuantities) -> Option<Self> {
+        let (elements, undefined) = point.orbital_elements(&available.planet, available.sidereal_angle)?;
+        Some(Self { elements, undefined, equatorial_radius: available.planet.equatorial_radius() })
     }
 }
 
 const fn of(name: &'static str, description: &'static str, quantity: ColumnSource) -> Column {
-    Column { name, description, on_request: false, needs: Needs::Nothing, quantity }
+    Column { name, description, on_request: false, requirement: Requirement::Nothing, quantity }
 }
 
 const fn column(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
@@ -110,10 +110,10 @@ const fn angle(name: &'static str, description: &'static str, value: fn(&FlightP
 const fn maybe(
     name: &'static str,
     description: &'static str,
-    needs: Needs,
+    requirement: Requirement,
     value: fn(&FlightPoint) -> Option<f64>,
 ) -> Column {
-    Column { needs, ..of(name, description, ColumnSource::Maybe(value)) }
+    Column { requirement, ..of(name, description, ColumnSource::Maybe(value)) }
 }
 
 const fn orbit(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
@@ -158,17 +158,19 @@ pub static COLUMNS: [Column; 44] = [
         ColumnSource::Turn(azimuth),
     ),
     column("air_speed", "Relative to the air, m/s.", |point| point.loads.air_speed),
-    maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Needs::Temperature, |point| {
+    maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Requirement::Temperature, |point| {
         point.temperature
     }),
-    maybe("pressure", "Of the air, Pa; where the atmosphere has a pressure.", Needs::Pressure, |point| point.pressure),
-    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has one.", Needs::SpeedOfSound, |point| {
+    maybe("pressure", "Of the air, Pa; where the atmosphere has a pressure.", Requirement::Pressure, |point| {
+        point.pressure
+    }),
+    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has one.", Requirement::SpeedOfSound, |point| {
         point.speed_of_sound
     }),
     maybe(
         "mach",
         "The speed relative to the air over that of sound; where the atmosphere has a speed of sound.",
-        Needs::SpeedOfSound,
+        Requirement::SpeedOfSound,
         |point| point.loads.mach,
     ),
     angle("bank_angle", "As commanded.", |point| point.bank_angle),
@@ -177,13 +179,13 @@ pub static COLUMNS: [Column; 44] = [
         "downrange",
         "From the initial ground point along the great circle of its heading, m, on the sphere of the equatorial radius; \
          null where the flight starts vertically or at rest.",
-        Needs::Nothing,
+        Requirement::Nothing,
         |point| point.downrange,
     ),
     maybe(
         "crossrange",
         "To the right of that great circle, m; null where the flight starts vertically or at rest.",
-        Needs::Nothing,
+        Requirement::Nothing,
         |point| point.crossrange,
     ),
     column("inertial_speed", "Relative to inertial space, m/s.", |point| point.inertial_speed),
@@ -196,7 +198,7 @@ pub static COLUMNS: [Column; 44] = [
         |point| point.specific_energy,
     ),
     Column {
-        needs: Needs::Epoch,
+        requirement: Requirement::Epoch,
         ..of(
             "utc",
             "The instant in UTC, RFC 3339 to the microsecond; with an epoch; leap seconds counted. Null after the year 9999.",
@@ -206,28 +208,31 @@ pub static COLUMNS: [Column; 44] = [
     maybe(
         "convective_heat_flux",
         "Into the stagnation point by convection, W/m²; with heating.",
-        Needs::Heating,
+        Requirement::Heating,
         |point| point.loads.heat_flux.map(|flux| flux.convective),
     ),
     maybe(
         "radiative_heat_flux",
         "Into the stagnation point by radiation, W/m²; with heating.",
-        Needs::Heating,
+        Requirement::Heating,
         |point| point.loads.heat_flux.map(|flux| flux.radiative),
     ),
     maybe(
         "heat_load",
         "The integral of both heat fluxes since the start, J/m²; with heating.",
-        Needs::Heating,
+        Requirement::Heating,
         |point| point.heat_load,
     ),
     maybe(
         "wall_temperature",
         "At which the wall radiates as much as it gets, K; with heating.",
-        Needs::Heating,
+        Requirement::Heating,
         |point| point.wall_temperature,
     ),
-    Column { needs: Needs::ChangingMass, ..column("mass", "kg; where an event may change it.", |point| point.mass) },
+    Column {
+        requirement: Requirement::ChangingMass,
+        ..column("mass", "kg; where an event may change it.", |point| point.mass)
+    },
     column(
         "ground_range",
         "From the initial ground point to that of the vehicle along the great circle between them, m, on the sphere of \
@@ -284,7 +289,7 @@ pub static COLUMNS: [Column; 44] = [
     ),
     Column {
         on_request: true,
-        needs: Needs::Thrust,
+        requirement: Requirement::Thrust,
         ..column("thrust", "Its magnitude, N, 0 while it is off; where an event switches it on.", |point| point.thrust)
     },
 ];
@@ -325,42 +330,44 @@ impl Serialize for Cell {
 
 impl Column {
     /// What the case lacks for the column, if anything.
-    pub fn missing(&self, known: Known) -> Option<&'static str> {
-        match self.needs {
-            Needs::Temperature if !known.temperature => {
+    pub fn missing(&self, available: AvailableQuantities) -> Option<&'static str> {
+        match self.requirement {
+            Requirement::Temperature if !available.temperature => {
                 Some("an atmosphere that has a temperature: us76, or a table with one")
             }
-            Needs::SpeedOfSound if !known.speed_of_sound => {
+            Requirement::SpeedOfSound if !available.speed_of_sound => {
                 Some("an atmosphere that has a speed of sound: us76, or a table with temperature or speed_of_sound")
             }
-            Needs::Pressure if !known.pressure => Some("an atmosphere that has a pressure: us76, or a table with one"),
-            Needs::Epoch if known.epoch.is_none() => Some("an epoch"),
-            Needs::Heating if !known.heating => Some("heating"),
-            Needs::ChangingMass if !known.changing_mass => Some("an event that changes it"),
-            Needs::Thrust if !known.thrust => Some("an event that switches a thrust on"),
+            Requirement::Pressure if !available.pressure => {
+                Some("an atmosphere that has a pressure: us76, or a table with one")
+            }
+            Requirement::Epoch if available.epoch.is_none() => Some("an epoch"),
+            Requirement::Heating if !available.heating => Some("heating"),
+            Requirement::ChangingMass if !available.changing_mass => Some("an event that changes it"),
+            Requirement::Thrust if !available.thrust => Some("an event that switches a thrust on"),
             _ => None,
         }
     }
 
     /// Every column that the case has unasked.
-    fn all(known: Known) -> impl Iterator<Item = &'static Self> {
-        COLUMNS.iter().filter(move |column| !column.on_request && column.missing(known).is_none())
+    fn all(available: AvailableQuantities) -> impl Iterator<Item = &'static Self> {
+        COLUMNS.iter().filter(move |column| !column.on_request && column.missing(available).is_none())
     }
 
-    fn of(&self, point: &FlightPoint, unit: AngleUnit, known: &Known) -> Cell {
+    fn of(&self, point: &FlightPoint, unit: AngleUnit, available: &AvailableQuantities) -> Cell {
         let or_nothing = |value: Option<f64>| value.map_or(Cell::Nothing, Cell::Number);
         match self.quantity {
             ColumnSource::Number(value) => Cell::Number(value(point)),
             ColumnSource::Angle(value) => Cell::Number(unit.from_radians(value(point))),
             ColumnSource::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
             ColumnSource::Maybe(value) => or_nothing(value(point)),
-            ColumnSource::Orbit(value) => or_nothing(Orbit::of(point, known).as_ref().and_then(value)),
+            ColumnSource::Orbit(value) => or_nothing(Orbit::of(point, available).as_ref().and_then(value)),
             ColumnSource::OrbitTurn(value) => {
-                let angle = Orbit::of(point, known).as_ref().and_then(value);
+                let angle = Orbit::of(point, available).as_ref().and_then(value);
                 or_nothing(angle.map(|angle| unit.turn_from_radians(angle)))
             }
             ColumnSource::Utc => {
-                known.epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant)
+                available.epoch.and_then(|epoch| epoch.utc(point.time)).map_or(Cell::Nothing, Cell::Instant)
             }
         }
     }
@@ -381,7 +388,7 @@ impl Column {
     }
 
     /// Its number at a point of the flight, in the unit of the request; none where there is none.
-    pub fn number(&self, point: &FlightPoint, unit: AngleUnit, known: &Known) -> Option<f64> {
+    pub fn number(&self, point: &FlightPoint, unit: AngleUnit, known: &AvailableQuantities) -> Option<f64> {
         match self.of(point, unit, known) {
             Cell::Number(number) => Some(number),
             Cell::Instant(_) | Cell::Nothing => None,
@@ -391,11 +398,12 @@ impl Column {
     /// The schema of a value.
     fn schema(&self) -> ObjectBuilder {
         let types = |kind| SchemaType::from_iter([kind, Type::Null]);
-        match (&self.quantity, self.needs) {
+        match (&self.quantity, self.requirement) {
             (ColumnSource::Utc, _) => ObjectBuilder::new()
                 .schema_type(types(Type::String))
                 .format(Some(SchemaFormat::KnownFormat(KnownFormat::DateTime))),
-            (ColumnSource::Maybe(_), Needs::Nothing) | (ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_), _) => {
+            (ColumnSource::Maybe(_), Requirement::Nothing)
+            | (ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_), _) => {
                 ObjectBuilder::new().schema_type(types(Type::Number))
             }
             _ => ObjectBuilder::new().schema_type(Type::Number),
@@ -408,20 +416,20 @@ impl Column {
 pub struct Row {
     point: FlightPoint,
     unit: AngleUnit,
-    known: Known,
+    available: AvailableQuantities,
 }
 
 impl Row {
-    /// A point of a flight of which so much is known.
-    pub fn new(point: FlightPoint, unit: AngleUnit, known: Known) -> Self {
-        Self { point, unit, known }
+    /// A point of a flight of which so much is available.
+    pub fn new(point: FlightPoint, unit: AngleUnit, available: AvailableQuantities) -> Self {
+        Self { point, unit, available }
     }
 }
 
 impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(Column::all(self.known).map(|column| {
-            let cell = column.of(&self.point, self.unit, &self.known);
+        serializer.collect_map(Column::all(self.available).map(|column| {
+            let cell = column.of(&self.point, self.unit, &self.available);
             (column.name, cell)
         }))
     }
@@ -432,7 +440,7 @@ impl PartialSchema for Row {
         let object = ObjectBuilder::new().description(Some("The state and the loads at an instant."));
         let with = |object: ObjectBuilder, column: &Column| {
             let object = object.property(column.name, column.schema().description(Some(column.description)));
-            if column.needs == Needs::Nothing { object.required(column.name) } else { object }
+            if column.requirement == Requirement::Nothing { object.required(column.name) } else { object }
         };
         COLUMNS.iter().filter(|column| !column.on_request).fold(object, with).into()
     }
@@ -446,7 +454,7 @@ pub struct Columns {
     points: Vec<FlightPoint>,
     chosen: Vec<&'static Column>,
     unit: AngleUnit,
-    known: Known,
+    available: AvailableQuantities,
 }
 
 impl Serialize for Columns {
@@ -477,7 +485,7 @@ struct Values<'a> {
 
 impl Serialize for Values<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Columns { points, unit, known, .. } = self.columns;
+        let Columns { points, unit, available, .. } = self.columns;
         // The kind of the quantity is looked at once, not at every value.
         match self.column.quantity {
             ColumnSource::Number(value) => serializer.collect_seq(points.iter().map(value)),
@@ -489,17 +497,22 @@ impl Serialize for Values<'_> {
             }
             ColumnSource::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
             ColumnSource::Utc | ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_) => {
-                serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, known)))
+                serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, available)))
             }
         }
     }
 }
 
 impl Columns {
-    /// The chosen columns at the points of a flight of which so much is known; without a choice all that are given unasked.
-    pub fn new(points: Vec<FlightPoint>, chosen: Option<Vec<&'static Column>>, unit: AngleUnit, known: Known) -> Self {
-        let chosen = chosen.unwrap_or_else(|| Column::all(known).collect());
-        Self { points, chosen, unit, known }
+    /// The chosen columns at the points of a flight of which so much is available; without a choice all that are given unasked.
+    pub fn new(
+        points: Vec<FlightPoint>,
+        chosen: Option<Vec<&'static Column>>,
+        unit: AngleUnit,
+        available: AvailableQuantities,
+    ) -> Self {
+        let chosen = chosen.unwrap_or_else(|| Column::all(available).collect());
+        Self { points, chosen, unit, available }
     }
 
     /// The instants.
@@ -509,7 +522,7 @@ impl Columns {
 
     /// The instant t = 0.
     pub fn epoch(&self) -> Option<Epoch> {
-        self.known.epoch
+        self.available.epoch
     }
 
     /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
@@ -526,7 +539,7 @@ impl Columns {
                 if index > 0 {
                     line(csv, b",")?;
                 }
-                match column.of(point, self.unit, &self.known) {
+                match column.of(point, self.unit, &self.available) {
                     Cell::Number(number) => serde_json::to_writer(&mut *csv, &number)?,
                     Cell::Instant(instant) => write!(csv, "{instant}").map_err(serde_json::Error::io)?,
                     Cell::Nothing => {}

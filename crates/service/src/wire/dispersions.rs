@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::columns::{COLUMNS, Column, Known};
+use super::columns::{AvailableQuantities, COLUMNS, Column};
 use super::description::{Object, variant};
 use super::numbers::{Change, MOST_VARIED, Numbers, Varied, immovable};
 use super::outputs::{At, FlightOutput, ground_point};
@@ -180,14 +180,14 @@ impl Dispersion {
     }
 
     /// The outputs of which the slopes are needed: those of the site of the end, and the final columns.
-    pub fn outputs(known: Known, flight: &Trajectory) -> Vec<FlightOutput> {
+    pub fn outputs(known: AvailableQuantities, flight: &Trajectory) -> Vec<FlightOutput> {
         let site = FlightOutput::Site(ground_point(&flight.last()));
         let end = |column| FlightOutput::Quantity { column, at: At::Moment(Moment::End) };
         std::iter::once(site).chain(Self::columns(known).map(end)).collect()
     }
 
     /// The columns that are given: the numbers that the case has unasked.
-    fn columns(known: Known) -> impl Iterator<Item = &'static Column> {
+    fn columns(known: AvailableQuantities) -> impl Iterator<Item = &'static Column> {
         COLUMNS
             .iter()
             .filter(move |column| column.is_unasked() && column.is_number() && column.missing(known).is_none())
@@ -239,7 +239,7 @@ pub struct Contribution {
 
 impl Covariance {
     /// The covariance, from the slopes of the outputs that [`Dispersion::outputs`] names by the variables.
-    pub fn new(dispersions: &[Dispersion], unit: AngleUnit, known: Known, slopes: &[Slopes]) -> Self {
+    pub fn new(dispersions: &[Dispersion], unit: AngleUnit, known: AvailableQuantities, slopes: &[Slopes]) -> Self {
         let rows: Vec<Vec<f64>> = slopes.iter().map(|row| row.slopes.clone()).collect();
         let mut first = 0;
         let mut groups = Vec::new();

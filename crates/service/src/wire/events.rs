@@ -369,9 +369,9 @@ fn parachute(object: &mut Object) -> Option<(String, Parachute)> {
 }
 
 impl Event {
-    pub(super) fn to_core(&self, events: &[Self], surroundings: &Surroundings) -> CoreEvent {
-        let parachute = |name: &String| surroundings.parachutes.get(name.as_str()).copied();
-        let turned = |axis: ThrustAxis| axis.rotated_by(&surroundings.to_planet);
+    pub(super) fn to_core(&self, events: &[Self], references: &EventReferences) -> CoreEvent {
+        let parachute = |name: &String| references.parachutes.get(name.as_str()).copied();
+        let turned = |axis: ThrustAxis| axis.rotated_by(&references.to_planet);
         let mut then = self.then.core.clone();
         then.release = self.then.released.iter().filter_map(parachute).collect();
         if let Some(impulse) = &mut then.impulse {
@@ -494,14 +494,14 @@ impl Condition {
 }
 
 /// What events refer to outside themselves.
-pub(super) struct Surroundings<'a> {
+pub(super) struct EventReferences<'a> {
     /// The numbers of the events that deploy parachutes, by the names of these.
     parachutes: HashMap<&'a str, usize>,
     /// Takes components in the inertial frame to planet-fixed ones at t = 0.
     to_planet: Rotation,
 }
 
-impl<'a> Surroundings<'a> {
+impl<'a> EventReferences<'a> {
     /// These events, with the rotation that takes components in the inertial frame to planet-fixed ones at t = 0.
     pub(super) fn new(events: &'a [Event], to_planet: Rotation) -> Self {
         let deploys = |(index, event): (usize, &'a Event)| Some((event.then.deployed.as_deref()?, index));

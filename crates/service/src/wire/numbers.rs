@@ -6,7 +6,7 @@ use reentry::scenario::{Bound, Case};
 use reentry::sensitivity::Variation;
 use serde_json::{Value, json};
 
-use super::columns::Known;
+use super::columns::AvailableQuantities;
 use super::reader::NumberField;
 use super::schema::ANGLE;
 use super::shown::shown;
@@ -26,7 +26,7 @@ pub struct Numbers {
     /// In the order in which they were read.
     fields: Vec<NumberField>,
     /// Reads a request: its case, and what is known of its flight.
-    read: fn(Value) -> Option<(Known, Case)>,
+    read: fn(Value) -> Option<(AvailableQuantities, Case)>,
 }
 
 /// Numbers that vary.
@@ -35,7 +35,7 @@ pub struct Varied {
     /// How they are moved.
     pub variation: Variation,
     /// What is known of the flights in which they are moved, by the variable.
-    pub known: Vec<(f64, Known)>,
+    pub known: Vec<(f64, AvailableQuantities)>,
 }
 
 /// How a number moves with a variable that is 0 where the number has its own value.
@@ -49,7 +49,7 @@ pub enum Change {
 
 impl Numbers {
     /// The numbers of a sound request, in which every default is filled in, and a function that reads such requests.
-    pub fn new(tree: Value, fields: Vec<NumberField>, read: fn(Value) -> Option<(Known, Case)>) -> Self {
+    pub fn new(tree: Value, fields: Vec<NumberField>, read: fn(Value) -> Option<(AvailableQuantities, Case)>) -> Self {
         Self { tree, fields, read }
     }
 
@@ -86,7 +86,7 @@ impl Numbers {
     }
 
     /// The case with numbers moved by the same variable, and what is known of its flight; none where that is no sound request.
-    fn moved(&self, fields: &[&NumberField], change: Change, by: f64) -> Option<(Known, Case)> {
+    fn moved(&self, fields: &[&NumberField], change: Change, by: f64) -> Option<(AvailableQuantities, Case)> {
         let mut tree = self.tree.clone();
         for field in fields {
             let number = tree.pointer_mut(&field.pointer)?;

@@ -9,7 +9,7 @@ use reentry::sensitivity::{Moment, Moved};
 use reentry::trajectory::FlightPoint;
 
 use super::AngleUnit;
-use super::columns::{COLUMNS, Column, Known};
+use super::columns::{AvailableQuantities, COLUMNS, Column};
 use super::description::{Object, Union, Words, word};
 use super::events::Event;
 use super::reader::Fault;
@@ -44,15 +44,15 @@ pub enum At {
 
 /// What is known of a flight, and of those in which a number is moved.
 #[derive(Debug)]
-pub struct KnownWhereMoved {
+pub struct AvailableWhereMoved {
     /// Of the flight itself.
-    pub flight: Known,
+    pub flight: AvailableQuantities,
     /// Of each variation by what it moves its number, and what is known there.
-    pub moved: Vec<Vec<(f64, Known)>>,
+    pub moved: Vec<Vec<(f64, AvailableQuantities)>>,
 }
 
-impl KnownWhereMoved {
-    fn of(&self, moved: Option<Moved>) -> &Known {
+impl AvailableWhereMoved {
+    fn of(&self, moved: Option<Moved>) -> &AvailableQuantities {
         let of_moved = |Moved { variation, offset }: Moved| {
             self.moved.get(variation)?.iter().find(|(by, _)| by.to_bits() == offset.to_bits()).map(|(_, known)| known)
         };
@@ -164,7 +164,7 @@ fn site(object: &mut Object) -> Option<Site> {
 
 impl FlightOutput {
     /// What is wrong with an output of a request, given at a pointer, if anything.
-    pub(super) fn fault(&self, pointer: &str, known: Known, events: &[Event]) -> Option<Fault> {
+    pub(super) fn fault(&self, pointer: &str, known: AvailableQuantities, events: &[Event]) -> Option<Fault> {
         let Self::Quantity { column, at } = self else { return None };
         if let Some(missing) = column.missing(known) {
             return Some(Fault::new(format!("{pointer}/quantity"), format!("{} needs {missing}", column.name)));
@@ -179,7 +179,7 @@ impl FlightOutput {
     }
 
     /// Its numbers, in the unit of the request, which has these events.
-    pub fn numbers(&self, unit: AngleUnit, events: &[Event], known: &Rc<KnownWhereMoved>) -> Vec<OutputNumber> {
+    pub fn numbers(&self, unit: AngleUnit, events: &[Event], known: &Rc<AvailableWhereMoved>) -> Vec<OutputNumber> {
         match self {
             Self::Quantity { column, at } => {
                 let at = match at {

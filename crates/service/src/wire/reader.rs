@@ -81,7 +81,7 @@ pub struct NumberField {
     pub pointer: String,
     /// The values that it may have; those of an angle are in radians.
     pub bound: Bound,
-    /// The unit; of an angle [`ANGLE`](super::schema::ANGLE), of a pure number empty.
+    /// The unit; of an angle [`ANGLE`], of a pure number empty.
     pub unit: &'static str,
 }
 

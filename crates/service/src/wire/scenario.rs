@@ -7,12 +7,12 @@ use reentry::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::atmosphere::{Atmosphere, atmosphere};
-use super::columns::{COLUMNS, Column, Known};
+use super::columns::{AvailableQuantities, COLUMNS, Column};
 use super::control::control;
 use super::description::{self, Object, Words, word};
 use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
-use super::events::{Condition, Event, MOST_EVENTS, Surroundings, condition, event};
+use super::events::{Condition, Event, EventReferences, MOST_EVENTS, condition, event};
 use super::heating::{Heating, heating};
 use super::numbers::{MOST_VARIED, Numbers};
 use super::planet::{Planet, planet};
@@ -51,12 +51,12 @@ pub struct SimulateRequest {
     pub output: Output,
     pub solver: Solver,
     /// What was left out and matters.
-    pub assumed: Assumed,
+    pub assumed: AssumedDefaults,
 }
 
 /// What a request leaves out, so that the answer warns of what was taken in its place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Assumed {
+pub struct AssumedDefaults {
     /// The unit of angles, though some angle is not 0.
     pub angle_unit: bool,
     /// The atmosphere.
@@ -66,9 +66,9 @@ pub struct Assumed {
 /// The rows of the trajectory.
 #[derive(Clone, Debug, Default)]
 pub struct Output {
-    /// The instants that are wanted, if any, with the pointer to the field that asks for them.
+    /// The instants that are asked for, if any, with the pointer to the field that asks for them.
     pub sampling: Option<(Sampling, &'static str)>,
-    /// The columns that are wanted; none where all that the case has are.
+    /// The columns that are asked for; none where all that the case has are.
     pub columns: Option<Vec<&'static Column>>,
 }
 
@@ -86,7 +86,7 @@ pub const FORMULATIONS: Words<Equations> = Words {
 
 /// What the answer is to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
+pub enum RequestedOutput {
     /// Everything.
     Answer,
     /// The trajectory alone.
@@ -97,11 +97,9 @@ pub enum Wanted {
 
 /// A sound request, ready to fly.
 #[derive(Debug)]
-pub struct Job {
+pub struct FlightRequest {
     /// What to fly.
     pub scenario: Scenario,
-    /// Which rows are wanted, if any; with the pointer to the field that asks for them.
-    pub sampling: Option<(Sampling, &'static str)>,
     /// As requested.
     pub request: SimulateRequest,
     /// The request with every default filled in, if it asks for it.
@@ -110,20 +108,19 @@ pub struct Job {
     pub numbers: Option<Numbers>,
 }
 
-impl Job {
+impl FlightRequest {
     /// Parses and checks a request.
     ///
     /// # Errors
     /// With every fault of its structure or, where that is sound, every fault across its fields.
-    pub fn try_from_tree(mut tree: Value, wanted: Wanted) -> Result<Self, Vec<Fault>> {
+    pub fn try_from_tree(mut tree: Value, output: RequestedOutput) -> Result<Self, Vec<Fault>> {
         let mut request = description::read(&mut tree, simulate_request)?;
-        let sampling = request.output.sampling.clone();
-        let mut misplaced = request.beyond_rows(wanted);
-        if wanted != Wanted::Map {
+        let mut misplaced = request.beyond_rows(output);
+        if output != RequestedOutput::Map {
             // A map has no columns, and takes no notice of those that the same case has elsewhere.
             misplaced.extend(request.impossible_columns());
         }
-        if wanted != Wanted::Answer && sampling.is_none() {
+        if output != RequestedOutput::Answer && request.output.sampling.is_none() {
             let detail = "must not be false: CSV and maps consist of the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
@@ -132,12 +129,12 @@ impl Job {
             Ok(scenario) if misplaced.is_empty() => scenario,
             scenario => return Err(scenario.err().into_iter().flatten().chain(misplaced).collect()),
         };
-        if wanted == Wanted::Map {
+        if output == RequestedOutput::Map {
             // Maps know no other unit, and so do the warnings on them.
             request.angle_unit = AngleUnit::Deg;
         }
         let echo = request.echo.then_some(tree);
-        Ok(Self { scenario, sampling, request, echo, numbers })
+        Ok(Self { scenario, request, echo, numbers })
     }
 }
 
@@ -155,7 +152,7 @@ pub fn simulate_request(object: &mut Object) -> Option<SimulateRequest> {
 }
 
 /// Reads a request: its case, and what is known of its flight; none where it is not sound.
-fn known_and_case(mut tree: Value) -> Option<(Known, Case)> {
+fn known_and_case(mut tree: Value) -> Option<(AvailableQuantities, Case)> {
     let request = description::read(&mut tree, simulate_request).ok()?;
     let scenario = request.try_into_scenario().ok()?;
     Some((request.known(), scenario.case().clone()))
@@ -227,7 +224,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .object(output);
     let solver =
         object.field("solver", "Solver").doc("How the equations are integrated.").default(json!({})).object(solver);
-    let assumed = Assumed { angle_unit: !given[0] && object.turns(), atmosphere: !given[1] };
+    let assumed = AssumedDefaults { angle_unit: !given[0] && object.turns(), atmosphere: !given[1] };
     let (stop, stop_when) = stop?;
     Some(SimulateRequest {
         name,
@@ -404,14 +401,14 @@ impl SimulateRequest {
         Ok(Some(numbers))
     }
 
-    /// What is asked for and has no place where the rows alone are wanted.
-    pub(super) fn beyond_rows(&self, wanted: Wanted) -> Vec<Fault> {
+    /// What is asked for and has no place where the answer has rows alone.
+    pub(super) fn beyond_rows(&self, output: RequestedOutput) -> Vec<Fault> {
         let asked = [
             ("/sensitivities", self.sensitivities.is_something(), "true"),
             ("/verify", self.verify, "true"),
             ("/dispersions", !self.dispersions.is_empty(), "given"),
         ];
-        let misplaced = asked.into_iter().filter(|(_, asked, _)| *asked && wanted != Wanted::Answer);
+        let misplaced = asked.into_iter().filter(|(_, asked, _)| *asked && output != RequestedOutput::Answer);
         let detail = |how| format!("must not be {how}: CSV and maps do not have it");
         misplaced.map(|(pointer, _, how)| Fault::new(pointer, detail(how))).collect()
     }
@@ -428,9 +425,9 @@ impl SimulateRequest {
     }
 
     /// What there is to know at an instant of the flight.
-    pub fn known(&self) -> Known {
+    pub fn known(&self) -> AvailableQuantities {
         let air = &self.atmosphere.core;
-        Known {
+        AvailableQuantities {
             temperature: air.has_temperature(),
             speed_of_sound: air.has_speed_of_sound(),
             pressure: air.has_pressure(),
@@ -461,7 +458,7 @@ impl SimulateRequest {
                 return Err(of_planet.into_iter().chain(across).chain(of_state).collect());
             }
         };
-        let surroundings = Surroundings::new(&self.events, orientation.to_planet);
+        let references = EventReferences::new(&self.events, orientation.to_planet);
         let case = Case {
             planet,
             atmosphere: self.atmosphere.core.clone(),
@@ -470,7 +467,7 @@ impl SimulateRequest {
             vehicle: self.vehicle.clone(),
             control: self.control.clone(),
             heating: self.heating.as_ref().map(|heating| heating.core),
-            events: self.events.iter().map(|event| event.to_core(&self.events, &surroundings)).collect(),
+            events: self.events.iter().map(|event| event.to_core(&self.events, &references)).collect(),
             initial_state,
             stop,
             solver: self.solver,

@@ -7,7 +7,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::columns::Known;
+use super::columns::AvailableQuantities;
 use super::description::{Object, Union};
 use super::events::Event;
 use super::numbers::{Change, MOST_VARIED, Numbers, Varied, immovable};
@@ -65,7 +65,7 @@ impl Asked {
     }
 
     /// What is wrong with the outputs and the pointers, in a request of which so much is known, and with these events.
-    pub(super) fn faults(&self, known: Known, events: &[Event], numbers: &Numbers) -> Vec<Fault> {
+    pub(super) fn faults(&self, known: AvailableQuantities, events: &[Event], numbers: &Numbers) -> Vec<Fault> {
         let Self::Matrix { of, to } = self else { return Vec::new() };
         let place = |(index, output): (usize, &FlightOutput)| {
             output.fault(&format!("/sensitivities/of/{index}"), known, events)

@@ -13,7 +13,7 @@ use super::AngleUnit;
 use super::columns::{Columns, Row};
 use super::dispersions::Covariance;
 use super::planet::MODELS;
-use super::scenario::{FORMULATIONS, Job};
+use super::scenario::{FORMULATIONS, FlightRequest};
 use super::schema::names;
 use super::sensitivities::GivenSensitivities;
 use super::vehicle;
@@ -171,7 +171,7 @@ pub struct SolverReport {
 
 /// What a request may ask for beyond the flight.
 #[derive(Clone, Debug, Default)]
-pub struct Extras {
+pub struct RequestedAnalyses {
     /// With `sensitivities`.
     pub sensitivities: Option<GivenSensitivities>,
     /// With `dispersions`.
@@ -244,14 +244,20 @@ pub struct SimulateResponse {
 }
 
 impl SimulateResponse {
-    /// The answer to a job that was flown in `elapsed` seconds; `points` are the rows that it asks for.
-    pub fn new(job: Job, flight: &Trajectory, points: Option<Vec<FlightPoint>>, extras: Extras, elapsed: f64) -> Self {
-        let Job { request, echo, .. } = job;
+    /// The answer to a request whose flight was flown in `elapsed` seconds; `points` are the rows that it asks for.
+    pub fn new(
+        requested: FlightRequest,
+        flight: &Trajectory,
+        points: Option<Vec<FlightPoint>>,
+        analyses: RequestedAnalyses,
+        elapsed: f64,
+    ) -> Self {
+        let FlightRequest { request, echo, .. } = requested;
         let unit = request.angle_unit;
         let known = request.known();
         let row = |point| Row::new(point, unit, known);
         let statistics = flight.statistics();
-        let warnings = Warning::of(&request, flight, extras.unverified);
+        let warnings = Warning::of(&request, flight, analyses.unverified);
         let report = |EventPoint { event, before, after }| EventReport {
             index: event,
             name: request.events[event].name.clone(),
@@ -302,9 +308,9 @@ impl SimulateResponse {
             events,
             peaks: Peaks::from(flight.peaks()),
             phases,
-            sensitivities: extras.sensitivities,
-            covariance: extras.covariance,
-            verification: extras.verification,
+            sensitivities: analyses.sensitivities,
+            covariance: analyses.covariance,
+            verification: analyses.verification,
             solver: SolverReport {
                 formulation: FORMULATIONS.of(request.solver.equations),
                 relative_tolerance: request.solver.relative_tolerance,
