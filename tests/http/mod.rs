@@ -31,6 +31,7 @@ mod numbers;
 mod output;
 mod page;
 mod reference;
+mod sensitivities;
 mod sidereal_time;
 mod simulate;
 mod surface;
