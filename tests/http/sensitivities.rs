@@ -29,7 +29,7 @@ fn capsule() -> Value {
              "then": {"deploy": {"name": "d", "drag_area": 20, "inflation_time": 3}}},
         ],
         "initial_state": {"type": "orbital_elements", "semi_major_axis": 6.46e6, "eccentricity": 0.022, "inclination": 51,
-            "raan": 20, "argument_of_periapsis": 200, "true_anomaly": 300, "sidereal_time": 100},
+            "raan": 20, "argument_of_periapsis": 200, "true_anomaly": 240, "sidereal_time": 100},
         "stop": {"altitude": 1000, "time": 5000},
         "output": {"trajectory": false},
     })
@@ -123,10 +123,10 @@ async fn a_matrix_is_the_differences_of_answers() {
                 values(&with(&filled, pointer, number + step)).await,
                 values(&with(&filled, pointer, number - step)).await,
             ];
-            let slopes = above.iter().zip(&below).map(|(above, below)| {
-                // The longitude and the node go around.
+            let slopes = above.iter().zip(&below).zip(&quantities).map(|((above, below), quantity)| {
                 let difference = above - below;
-                (difference - 360.0 * if difference.abs() > 180.0 { difference.signum() } else { 0.0 }) / (2.0 * step)
+                let goes_around = ["longitude", "raan"].contains(quantity) && difference.abs() > 180.0;
+                (difference - if goes_around { 360.0_f64.copysign(difference) } else { 0.0 }) / (2.0 * step)
             });
             by_steps.push(slopes.collect::<Vec<_>>());
         }

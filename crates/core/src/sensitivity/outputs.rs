@@ -1,9 +1,11 @@
 //! Outputs of a flight, and their slopes by numbers of its case.
 
+use std::cell::Cell;
+
 use super::follow::{Follow, Place, Sample};
 use super::variation::{CENTRAL, Dual, Node, Variation, Varied};
 use crate::interrupt::Interrupt;
-use crate::motion::{Forces, State};
+use crate::motion::State;
 use crate::root::bracketed;
 use crate::scenario::dispatch;
 use crate::simulate::SimulationError;
@@ -143,12 +145,13 @@ struct Near<'a, const W: usize> {
     sample: &'a Sample<W>,
     /// The point of the sample itself.
     point: FlightPoint,
-    forces: Forces,
 }
 
 /// The part of its own size by which a state is moved to find the slope of an output: differences of fourth order then are exact to ten
 /// digits even of a density, whose scale is a thousandth of the radius.
 const MOVED: f64 = 1e-5;
+/// Numbers of the vehicle that are smaller count as if they had this size, in their units.
+const LEAST_SIZE: f64 = 1e-3;
 
 impl<'a, const W: usize> Near<'a, W> {
     fn new(flight: &'a Trajectory, varied: &'a Varied<'a, W>, first: usize, sample: &'a Sample<W>) -> Self {
@@ -157,7 +160,7 @@ impl<'a, const W: usize> Near<'a, W> {
         let mut forces = phase.forces(&flight.case);
         forces.enter(*mode);
         let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &state.map(|number| number.re));
-        Self { flight, varied, first, sample, point, forces }
+        Self { flight, varied, first, sample, point }
     }
 
     /// The output itself.
@@ -165,7 +168,7 @@ impl<'a, const W: usize> Near<'a, W> {
         (output.value)(&self.point, None)
     }
 
-    /// The derivative of the output by a variation: by the way it moves the state, and by the numbers and the models that it moves.
+    /// The derivative of the output by a variation: by the way it moves the state and the vehicle, and by the models that it moves.
     fn slope(&self, output: &Output, variation: usize) -> f64 {
         let Some(value) = self.value(output) else { return f64::NAN };
         let difference = |moved: Option<f64>| {
@@ -180,33 +183,36 @@ impl<'a, const W: usize> Near<'a, W> {
         });
         let moved = |node: &Node| {
             let moved = Moved { variation: self.first + variation, offset: node.offset };
-            let point = self.with_numbers_moved(variation, node);
+            let point = self.with_models_moved(node);
             node.weight * difference((output.value)(&point, Some(moved)))
         };
         by_state + self.varied.variations[variation].nodes().iter().map(moved).sum::<f64>()
     }
 
-    /// The point where the number of a variation has moved the state, and that from which the flight sets out, by an offset.
+    /// The point where the number of a variation has moved the state, the vehicle, and the place from which the flight sets out, by an
+    /// offset.
     fn with_state_moved(&self, variation: usize, offset: f64) -> FlightPoint {
-        let Sample { time, state, ground_distance, phase, .. } = self.sample;
+        let Sample { time, state, ground_distance, phase, mode } = self.sample;
         let moved = |number: Dual<W>| number.re + offset * slope(&number, variation);
         let origin = Origin::of(&State::from(self.varied.start()).map(moved).planet_fixed());
-        let phase = phase.map(|number| number.re);
-        let point = self.flight.point_from(&origin, &self.forces, &phase, moved(*time), &state.map(moved));
+        let phase = phase.map(moved);
+        let mut forces = phase.forces(&self.flight.case);
+        forces.enter(*mode);
+        let point = self.flight.point_from(&origin, &forces, &phase, moved(*time), &state.map(moved));
         let ground_distance = self.point.ground_distance + offset * slope(ground_distance, variation);
         FlightPoint { ground_distance, ..point }
     }
 
-    /// The point where the number of a variation is moved in the vehicle and in the models.
-    fn with_numbers_moved(&self, variation: usize, node: &Node) -> FlightPoint {
+    /// The point where the number of a variation is moved in the models, while the vehicle and its state stay.
+    fn with_models_moved(&self, node: &Node) -> FlightPoint {
         let Sample { time, state, phase, mode, .. } = self.sample;
-        let phase = phase.map(|number| number.re + node.offset * slope(&number, variation));
+        let phase = phase.map(|number| number.re);
         let mut forces = phase.with_models_of(&node.case).forces(&node.case);
         forces.enter(*mode);
         self.flight.point_from(&self.flight.origin, &forces, &phase, time.re, &state.map(|number| number.re))
     }
 
-    /// The offset of a variation that moves the state by a small part of its size; none where it does not move it.
+    /// The offset of a variation that moves the state and the vehicle by a small part of their sizes; none where it does not move them.
     fn step(&self, variation: usize) -> Option<f64> {
         let Sample { time, state, ground_distance, phase, .. } = self.sample;
         let State { position, velocity, heat_load, .. } = state.map(|number| number.re);
@@ -217,15 +223,20 @@ impl<'a, const W: usize> Near<'a, W> {
         let least = 1e-3 * (self.flight.case.planet.gravitational_parameter / radius).sqrt();
         let speed = velocity.norm().max(least);
         let start_speed = self.flight.case.initial_state.velocity.norm().max(least);
+        let of_phase = Cell::new(0.0_f64);
+        let _ = phase.map(|number| {
+            let size = if number.re == 0.0 { 1.0 } else { number.re.abs().max(LEAST_SIZE) };
+            of_phase.set(of_phase.get().max(slope(&number, variation).abs() / size));
+        });
         let sizes = [
             rates.position.norm() / radius,
             rates.velocity.norm() / speed,
             slope(time, variation).abs() * speed / radius,
             rates.heat_load.unwrap_or(0.0).abs() / heat_load.unwrap_or(0.0).abs().max(1.0),
-            rates.mass.unwrap_or(0.0).abs() / phase.vehicle.mass.re,
             slope(ground_distance, variation).abs() / radius,
             start.position.norm() / radius,
             start.velocity.norm() / start_speed,
+            of_phase.get(),
         ];
         let size = sizes.into_iter().fold(0.0, f64::max);
         (size > 0.0).then(|| MOVED / size)

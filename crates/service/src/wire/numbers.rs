@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use reentry::scenario::{Bound, Case};
+use reentry::scenario::Case;
 use reentry::sensitivity::Variation;
 use serde_json::{Value, json};
 
@@ -114,19 +114,30 @@ impl Numbers {
         Some(Varied { variation: variation?, known: known.into_inner() })
     }
 
-    /// The size of a number, to which its steps are small: its own, but of one that may be negative at least such that differences of what
-    /// it is added to, as an altitude is to a radius, are not lost in rounding.
+    /// The size of a number, to which its steps are small: its own, but that of places and motions within limits, so that differences of what
+    /// an altitude is added to, a radius, are not lost in rounding. Entries of tables move by less: where one moves, the curve bends elsewhere,
+    /// and its slopes are limited in other places.
     fn size(&self, field: &NumberField) -> f64 {
         let value = self.value(field).abs();
-        let Bound { minimum, .. } = field.bound;
-        let least = match field.unit {
+        let or_one = if value > 0.0 { value } else { 1.0 };
+        let may_be_negative = field.bound.minimum < 0.0;
+        match field.unit {
+            "m" if is_of_table(&field.pointer) => 100.0,
+            _ if is_of_table(&field.pointer) => 0.01 * or_one,
             ANGLE => 1.0,
-            "m" => 1e4,
-            "m/s" => 10.0,
-            _ => 1.0,
-        };
-        if minimum >= 0.0 && value > 0.0 { value } else { value.max(least) }
+            "m" if may_be_negative || value > 1e4 => value.clamp(1e3, 1e4),
+            "m/s" if may_be_negative => value.max(10.0),
+            "rad/s" if value <= 0.0 => 1e-4,
+            _ => or_one,
+        }
     }
+}
+
+/// Whether the number of a pointer is an entry of a table, and not of a vector.
+fn is_of_table(pointer: &str) -> bool {
+    let of_vector = ["/position/", "/velocity/", "/direction/"].iter().any(|vector| pointer.contains(vector));
+    let is_entry = pointer.rsplit('/').next().is_some_and(|last| last.chars().all(|char| char.is_ascii_digit()));
+    is_entry && !of_vector
 }
 
 /// Why a number has no variation.
