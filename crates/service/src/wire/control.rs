@@ -6,7 +6,7 @@ use reentry::control::{Against, Command, Control, Interpolation, Schedule};
 use reentry::scenario::Bound;
 use serde_json::json;
 
-use super::description::{Field, Object, Union, Words, word};
+use super::description::{AngleOrObject, Field, Object, Words, word};
 use super::reader::MOST_ENTRIES;
 use super::schema::{bounds, is};
 
@@ -15,9 +15,9 @@ const AGAINST: Words<Against> = Words {
     name: "Against",
     doc: "What a schedule runs along.",
     words: &[
-        word("time", Against::Time, "Time, s").doc("Since the start, s."),
-        word("altitude", Against::Altitude, "Altitude, m").doc("Along the radius vector, m."),
-        word("speed", Against::Speed, "Speed, m/s").doc("Relative to the rotating planet, m/s."),
+        word("time", Against::Time, "Time, s").unit("s").doc("Since the start, s."),
+        word("altitude", Against::Altitude, "Altitude, m").unit("m").doc("Along the radius vector, m."),
+        word("speed", Against::Speed, "Speed, m/s").unit("m/s").doc("Relative to the rotating planet, m/s."),
         word("mach", Against::Mach, "Mach number")
             .doc("The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound."),
     ],
@@ -34,10 +34,10 @@ const INTERPOLATION: Words<Interpolation> = Words {
 };
 
 /// An angle, or a schedule of it.
-const COMMAND: Union = Union {
+const COMMAND: AngleOrObject = AngleOrObject {
     name: "Command",
     doc: "An angle during the flight: a number, or a schedule.",
-    simple: "The same all the time, within ±2π (±360°).",
+    angle: "The same all the time, within ±2π (±360°).",
     object: "an object with a schedule",
 };
 
@@ -75,17 +75,15 @@ fn schedule(object: &mut Object) -> Option<Schedule> {
 
 fn entries(object: &mut Object) -> Option<Schedule> {
     let against = object.field("against", "Against").doc("What it runs along.").word(&AGAINST);
-    let (bound, unit) = match against {
-        Some(Against::Time) => (Bound::NON_NEGATIVE, "s"),
-        Some(Against::Altitude) => (Bound::DISTANCE, "m"),
-        Some(Against::Speed) => (Bound::NON_NEGATIVE, "m/s"),
-        Some(Against::Mach) => (Bound::NON_NEGATIVE, ""),
-        None => (Bound::FINITE, ""),
+    let bound = match against {
+        Some(Against::Altitude) => Bound::DISTANCE,
+        Some(Against::Time | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
+        None => Bound::FINITE,
     };
     let at = object
         .field("at", "At")
         .doc("Ascending, in the unit of the quantity; time, speed and Mach number at least 0.")
-        .unit(unit)
+        .unit(against.map_or("", |against| AGAINST.unit_of(against)))
         .ascending()
         .numbers(bound, [1, MOST_ENTRIES]);
     object.condition(|| {

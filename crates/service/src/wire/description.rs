@@ -71,11 +71,12 @@ pub struct Word<T> {
     pub meaning: T,
     title: &'static str,
     doc: &'static str,
+    unit: &'static str,
 }
 
 /// A word, what it stands for, and a label.
 pub const fn word<T: Copy>(word: &'static str, meaning: T, title: &'static str) -> Word<T> {
-    Word { word, meaning, title, doc: "" }
+    Word { word, meaning, title, doc: "", unit: "" }
 }
 
 impl<T: Copy> Word<T> {
@@ -83,6 +84,12 @@ impl<T: Copy> Word<T> {
     #[must_use]
     pub const fn doc(self, doc: &'static str) -> Self {
         Self { doc, ..self }
+    }
+
+    /// The unit of the quantity that it names.
+    #[must_use]
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
     }
 }
 
@@ -102,6 +109,11 @@ impl<T: Copy + PartialEq> Words<T> {
     pub fn of(&self, meaning: T) -> &'static str {
         self.words.iter().find(|word| word.meaning == meaning).map_or("", |word| word.word)
     }
+
+    /// The unit of a quantity; empty where it has none.
+    pub fn unit_of(&self, meaning: T) -> &'static str {
+        self.words.iter().find(|word| word.meaning == meaning).map_or("", |word| word.unit)
+    }
 }
 
 impl<T: Copy> Words<T> {
@@ -116,6 +128,9 @@ impl<T: Copy> Words<T> {
         for word in self.words.iter().filter(|word| !word.title.is_empty()) {
             doc.push(format!("`{}`: {}", word.word, word.doc));
             schema["x-titles"][word.word] = json!(word.title);
+            if !word.unit.is_empty() {
+                schema["x-units"][word.word] = json!(word.unit);
+            }
         }
         schema["description"] = json!(doc.join(" "));
         if self.name.is_empty() { schema } else { object.component(self.name, schema) }
@@ -143,14 +158,34 @@ pub fn variant<'a, T>(
 /// The field by which an alternative is called, and the description of its fields.
 pub type Alternative<'a, T> = (&'static str, &'a dyn Fn(&mut Object) -> Option<T>);
 
-/// A value that is written in a simple way, or as an object.
-pub struct Union {
+/// A value that is a word or an object.
+pub struct WordOrObject {
     /// The name of its schema.
     pub name: &'static str,
     /// The description of its schema.
     pub doc: &'static str,
-    /// The description of the simple way.
-    pub simple: &'static str,
+}
+
+/// A value that is true or false or an object.
+pub struct BooleanOrObject {
+    /// The name of its schema.
+    pub name: &'static str,
+    /// The description of its schema.
+    pub doc: &'static str,
+    /// The description of true and false.
+    pub boolean: &'static str,
+    /// How faults call the object.
+    pub object: &'static str,
+}
+
+/// A value that is an angle or an object.
+pub struct AngleOrObject {
+    /// The name of its schema.
+    pub name: &'static str,
+    /// The description of its schema.
+    pub doc: &'static str,
+    /// The description of the angle.
+    pub angle: &'static str,
     /// How faults call the object.
     pub object: &'static str,
 }
@@ -674,7 +709,7 @@ impl Field<'_, '_, '_> {
     /// An angle, in radians as its bound, or an object.
     pub fn angle_or<T>(
         self,
-        union: &Union,
+        union: &AngleOrObject,
         bound: Bound,
         from_angle: impl Fn(f64) -> T,
         read: impl Fn(&mut Object) -> Option<T>,
@@ -682,7 +717,7 @@ impl Field<'_, '_, '_> {
         self.unit(ANGLE).take(
             |schema| {
                 let mut angle = schema::number(schema::widened(bound));
-                angle["description"] = json!(union.simple);
+                angle["description"] = json!(union.angle);
                 let object = described(schema, &read);
                 schema.component(union.name, json!({"oneOf": [angle, object], "description": union.doc}))
             },
@@ -701,7 +736,7 @@ impl Field<'_, '_, '_> {
     /// One of several words, or an object.
     pub fn word_or<W: Copy + Into<T>, T>(
         self,
-        union: &Union,
+        union: &WordOrObject,
         words: &Words<W>,
         read: impl Fn(&mut Object) -> Option<T>,
     ) -> Option<T> {
@@ -727,13 +762,13 @@ impl Field<'_, '_, '_> {
     /// True or false, or an object.
     pub fn boolean_or<T>(
         self,
-        union: &Union,
+        union: &BooleanOrObject,
         from_boolean: impl Fn(bool) -> T,
         read: impl Fn(&mut Object) -> Option<T>,
     ) -> Option<T> {
         self.take(
             |schema| {
-                let boolean = json!({"type": "boolean", "description": union.simple});
+                let boolean = json!({"type": "boolean", "description": union.boolean});
                 let object = described(schema, &read);
                 schema.component(union.name, json!({"oneOf": [boolean, object], "description": union.doc}))
             },

@@ -13,9 +13,9 @@ use reentry::scenario::Bound;
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
 
-use super::description::{Object, Union, Words, word};
+use super::description::{Object, WordOrObject, Words, word};
 use super::reader::{Fault, MOST_FAULTS};
-use super::schema::{bounds, is, widened};
+use super::schema::{ANGLE, bounds, is, widened};
 use super::shown::{quoted, shown};
 use super::vehicle::aerodynamics;
 
@@ -58,63 +58,57 @@ pub static QUANTITIES: Words<Quantity> = Words {
     name: "Quantity",
     doc: "What may pass a value.",
     words: &[
-        word("time", Quantity::Time, "Time, s").doc("Since the start, s."),
-        word("altitude", Quantity::Altitude, "Altitude, m").doc("Along the radius vector, m."),
-        word("speed", Quantity::Speed, "Speed, m/s").doc("Relative to the rotating planet, m/s."),
+        word("time", Quantity::Time, "Time, s").unit("s").doc("Since the start, s."),
+        word("altitude", Quantity::Altitude, "Altitude, m").unit("m").doc("Along the radius vector, m."),
+        word("speed", Quantity::Speed, "Speed, m/s").unit("m/s").doc("Relative to the rotating planet, m/s."),
         word("mach", Quantity::Mach, "Mach number")
             .doc("The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound."),
         word("dynamic_pressure", Quantity::DynamicPressure, "Dynamic pressure, Pa")
+            .unit("Pa")
             .doc("½ρV² of the speed relative to the air, Pa."),
         word("load_factor", Quantity::LoadFactor, "Load factor, g")
             .doc("Lift, drag and thrust over mass and 9.80665 m/s²."),
         word("flight_path_angle", Quantity::FlightPathAngle, "Flight-path angle")
+            .unit(ANGLE)
             .doc("Of the velocity relative to the planet."),
-        word("mass", Quantity::Mass, "Mass, kg").doc("Of the vehicle, kg."),
-        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").doc("Relative to the air, m/s."),
-        word("inertial_speed", Quantity::InertialSpeed, "Inertial speed, m/s").doc("Relative to inertial space, m/s."),
+        word("mass", Quantity::Mass, "Mass, kg").unit("kg").doc("Of the vehicle, kg."),
+        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").unit("m/s").doc("Relative to the air, m/s."),
+        word("inertial_speed", Quantity::InertialSpeed, "Inertial speed, m/s")
+            .unit("m/s")
+            .doc("Relative to inertial space, m/s."),
         word("specific_energy", Quantity::SpecificEnergy, "Specific energy, J/kg")
+            .unit("J/kg")
             .doc("Half the squared inertial speed and the potential of gravity, J/kg."),
         word("apoapsis_altitude", Quantity::ApoapsisAltitude, "Apoapsis altitude, m")
+            .unit("m")
             .doc("Of the osculating orbit, above the equatorial radius, m; 1e13 m where it is not bound."),
         word("periapsis_altitude", Quantity::PeriapsisAltitude, "Periapsis altitude, m")
+            .unit("m")
             .doc("Of the osculating orbit, above the equatorial radius, m."),
-        word("inclination", Quantity::Inclination, "Inclination").doc("Of the osculating orbit to the equator."),
-        word("heat_flux", Quantity::HeatFlux, "Heat flux, W/m²").doc("Into the stagnation point, W/m²; needs heating."),
+        word("inclination", Quantity::Inclination, "Inclination")
+            .unit(ANGLE)
+            .doc("Of the osculating orbit to the equator."),
+        word("heat_flux", Quantity::HeatFlux, "Heat flux, W/m²")
+            .unit("W/m²")
+            .doc("Into the stagnation point, W/m²; needs heating."),
         word("heat_load", Quantity::HeatLoad, "Heat load, J/m²")
+            .unit("J/m²")
             .doc("Into the stagnation point since the start, J/m²; needs heating."),
         word("wall_temperature", Quantity::WallTemperature, "Wall temperature, K")
+            .unit("K")
             .doc("At which the wall radiates as much as it gets, K; needs heating."),
         word("downrange", Quantity::Downrange, "Downrange, m")
+            .unit("m")
             .doc("Along the great circle of the initial heading, m; needs an initial heading."),
         word("ground_range", Quantity::GroundRange, "Ground range, m")
+            .unit("m")
             .doc("Great-circle distance from the initial ground point, m."),
         word("deceleration", Quantity::Deceleration, "Deceleration, m/s²")
+            .unit("m/s²")
             .doc("-dV/dt of the speed relative to the planet, m/s²."),
-        word("density", Quantity::Density, "Density, kg/m³").doc("Of the air, kg/m³."),
+        word("density", Quantity::Density, "Density, kg/m³").unit("kg/m³").doc("Of the air, kg/m³."),
     ],
 };
-
-/// The unit of a quantity that is no angle.
-fn unit(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Time => "s",
-        Quantity::Altitude
-        | Quantity::ApoapsisAltitude
-        | Quantity::PeriapsisAltitude
-        | Quantity::Downrange
-        | Quantity::GroundRange => "m",
-        Quantity::Speed | Quantity::AirSpeed | Quantity::InertialSpeed => "m/s",
-        Quantity::DynamicPressure => "Pa",
-        Quantity::Mass => "kg",
-        Quantity::SpecificEnergy => "J/kg",
-        Quantity::HeatFlux => "W/m²",
-        Quantity::HeatLoad => "J/m²",
-        Quantity::WallTemperature => "K",
-        Quantity::Deceleration => "m/s²",
-        Quantity::Density => "kg/m³",
-        Quantity::Mach | Quantity::LoadFactor | Quantity::FlightPathAngle | Quantity::Inclination => "",
-    }
-}
 
 /// An event.
 pub(super) fn event(object: &mut Object) -> Option<Event> {
@@ -152,7 +146,7 @@ fn crossing(object: &mut Object) -> Option<Condition> {
         let field = object.field(name, title).doc(doc).optional();
         match quantity {
             Some(quantity) if quantity.is_angle() => field.angle(quantity.bound()),
-            Some(quantity) => field.unit(unit(quantity)).number(quantity.bound()),
+            Some(quantity) => field.unit(QUANTITIES.unit_of(quantity)).number(quantity.bound()),
             // Which bound the value has is not known.
             None => field.number(Bound::FINITE),
         }
@@ -251,12 +245,8 @@ fn impulse(object: &mut Object) -> Option<Impulse> {
 }
 
 /// What becomes of the thrust.
-const THRUST_COMMAND: Union = Union {
-    name: "ThrustCommand",
-    doc: "What becomes of the thrust: another one, or `\"off\"`.",
-    simple: "",
-    object: "",
-};
+const THRUST_COMMAND: WordOrObject =
+    WordOrObject { name: "ThrustCommand", doc: "What becomes of the thrust: another one, or `\"off\"`." };
 
 const OFF: Words<Engine> =
     Words { name: "", doc: "The thrust is switched off.", words: &[word("off", Engine::Off, "")] };
@@ -295,12 +285,8 @@ fn thrust(object: &mut Object) -> Option<Thrust> {
 }
 
 /// A direction that moves with the vehicle, or one that stays in inertial space.
-const ALONG: Union = Union {
-    name: "Along",
-    doc: "Where to: by a word, or a direction that stays in inertial space.",
-    simple: "",
-    object: "",
-};
+const ALONG: WordOrObject =
+    WordOrObject { name: "Along", doc: "Where to: by a word, or a direction that stays in inertial space." };
 
 const AXES: Words<ThrustAxis> = Words {
     name: "Axis",

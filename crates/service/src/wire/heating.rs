@@ -3,7 +3,7 @@
 use reentry::heating::{Convective, Heating as CoreHeating, Radiative};
 use reentry::scenario::Bound;
 
-use super::description::{Object, Union, Words, word};
+use super::description::{Object, WordOrObject, Words, word};
 
 /// The heating of a request.
 #[derive(Clone, Debug)]
@@ -51,12 +51,8 @@ const RADIATIVE: Words<Radiative> = Words {
 };
 
 /// A correlation in air by its name, or that of Sutton and Graves in another gas.
-const CONVECTIVE_FLUX: Union = Union {
-    name: "ConvectiveFlux",
-    doc: "The convective flux: by a correlation for air, or in another gas.",
-    simple: "",
-    object: "",
-};
+const CONVECTIVE_FLUX: WordOrObject =
+    WordOrObject { name: "ConvectiveFlux", doc: "The convective flux: by a correlation for air, or in another gas." };
 
 /// The heating.
 pub(super) fn heating(object: &mut Object) -> Option<Heating> {

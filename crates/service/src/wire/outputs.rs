@@ -10,7 +10,7 @@ use reentry::trajectory::FlightPoint;
 
 use super::AngleUnit;
 use super::columns::{AvailableQuantities, COLUMNS, Column};
-use super::description::{Object, Union, Words, word};
+use super::description::{Object, WordOrObject, Words, word};
 use super::events::Event;
 use super::reader::Fault;
 
@@ -92,12 +92,7 @@ const MOMENTS: Words<Moment> = Words {
     ],
 };
 
-const AT: Union = Union {
-    name: "OutputMoment",
-    doc: "When an output is taken from the flight.",
-    simple: "A moment of the flight.",
-    object: "an object with an event or a time",
-};
+const AT: WordOrObject = WordOrObject { name: "OutputMoment", doc: "When an output is taken from the flight." };
 
 const SIDES: Words<bool> = Words {
     name: "Side",

@@ -414,10 +414,13 @@ impl ObjectReader<'_> {
         }
         let place = format!("{}/{name}", self.pointer);
         let elements = self.map.get_mut(name).and_then(Value::as_array_mut).into_iter().flatten();
-        let read = elements
-            .enumerate()
-            .filter_map(|(index, element)| object(element, format!("{place}/{index}"), self.context, &mut read));
-        let objects: Vec<_> = read.collect();
+        let mut objects = Vec::new();
+        for (index, element) in elements.enumerate() {
+            objects.extend(object(element, format!("{place}/{index}"), self.context, &mut read));
+            if self.context.has_enough() {
+                break;
+            }
+        }
         (objects.len() == count).then_some(objects)
     }
 

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 
 use super::AngleUnit;
 use super::columns::AvailableQuantities;
-use super::description::{Object, Union};
+use super::description::{BooleanOrObject, Object};
 use super::events::Event;
 use super::numbers::{Change, MOST_VARIED, Numbers, Varied, immovable};
 use super::outputs::{FlightOutput, OutputNumber, output};
@@ -30,10 +30,10 @@ pub enum Asked {
     },
 }
 
-const SENSITIVITIES: Union = Union {
+const SENSITIVITIES: BooleanOrObject = BooleanOrObject {
     name: "AskedSensitivities",
     doc: "Which derivatives of the flight the answer has.",
-    simple: "`true`: those of the flight's end by a fixed list of numbers, for the computing of about six flights.",
+    boolean: "`true`: those of the flight's end by a fixed list of numbers, for the computing of about six flights.",
     object: "an object with outputs and numbers",
 };
 

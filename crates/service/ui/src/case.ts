@@ -1,3 +1,4 @@
+import schema from 'virtual:schema';
 import type { Case } from './api';
 import type { AngleUnit } from './quantities';
 
@@ -49,29 +50,17 @@ export function typed(text: string): number | string | undefined {
   return Number.isFinite(value) && !/^[+-]?0[xob]/i.test(trimmed) ? value : trimmed;
 }
 
-const ANGLES = new Set([
-  'longitude',
-  'geocentric_latitude',
-  'geodetic_latitude',
-  'flight_path_angle',
-  'heading',
-  'azimuth',
-  'inertial_flight_path_angle',
-  'inertial_heading',
-  'inertial_azimuth',
-  'inclination',
-  'raan',
-  'argument_of_periapsis',
-  'true_anomaly',
-  'mean_anomaly',
-  'sidereal_angle',
-  'from',
-  'bank_angle',
-  'angle_of_attack',
-]);
+/** The names of fields that are angles; the values of a schedule are told by what they stand in. */
+const ANGLES = new Set(
+  Object.values(schema).flatMap(({ properties = {} }) =>
+    Object.keys(properties).filter((name) => properties[name]?.['x-unit'] === 'angle' && name !== 'value'),
+  ),
+);
 
 /** The quantities of conditions that are angles. */
-export const ANGLE_QUANTITIES: ReadonlySet<unknown> = new Set(['flight_path_angle', 'inclination']);
+export const ANGLE_QUANTITIES: ReadonlySet<unknown> = new Set(
+  Object.entries(schema.Quantity?.['x-units'] ?? {}).flatMap(([quantity, unit]) => (unit === 'angle' ? [quantity] : [])),
+);
 
 /** An angle in another unit; what is no number stays as it is. */
 export function turned(value: unknown, from: AngleUnit, to: AngleUnit): unknown {

@@ -1,6 +1,6 @@
 declare module 'virtual:schema' {
-  /** Of each schema of a case its properties, with what the OpenAPI document says of them. */
-  const schema: Record<string, Record<string, import('./form/schema').Property>>;
+  /** The schemas of which a case is made, as the OpenAPI document has them. */
+  const schema: Record<string, import('./form/schema').Schema>;
   export default schema;
 }
 

@@ -51,7 +51,13 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
       </summary>
       <div class="fold-body">
         {names.map((name) => (
-          <Item key={name} field={SECTIONS[name]} path={[name]} property={schema.SimulateRequest?.[name]} isBare={names.length === 1} />
+          <Item
+            key={name}
+            field={SECTIONS[name]}
+            path={[name]}
+            property={schema.SimulateRequest?.properties?.[name]}
+            isBare={names.length === 1}
+          />
         ))}
       </div>
     </details>
@@ -424,8 +430,8 @@ function emptyOf(field: Extract<Field, { kind: 'group' }>): object {
 
 /** The fields of a schema: alternatives in one line, columns of one table side by side. */
 function Members({ fields, schema: name, path }: { fields: Fields; schema: string; path: Path }) {
-  const properties = schema[name] ?? {};
-  const isNeeded = isAsked(fields, path);
+  const properties = schema[name]?.properties ?? {};
+  const isNeeded = isAsked(name, fields, path);
   const done = new Set<string>();
   return (
     <>
@@ -443,13 +449,13 @@ function Members({ fields, schema: name, path }: { fields: Fields; schema: strin
 }
 
 /** Fields that have a meaning only beside others: the numbers of a planet that is custom, the area but with a ballistic coefficient. */
-function isAsked(fields: Fields, path: Path): (name: string) => boolean {
+function isAsked(schemaName: string, fields: Fields, path: Path): (name: string) => boolean {
   const own = get(draft.value, path) as Record<string, unknown> | undefined;
-  if (fields === SECTIONS.planet.fields) {
+  if (schemaName === 'Planet') {
     const isCustom = own?.model === 'custom';
     return (name) => isCustom || ['model', 'shape', 'gravity'].includes(name) || own?.[name] !== undefined;
   }
-  if (fields === SECTIONS.vehicle.fields) {
+  if (schemaName === 'Vehicle') {
     const isBallistic = get(own, ['aerodynamics', 'type']) === 'ballistic';
     return (name) => name !== 'reference_area' || !isBallistic || own?.[name] !== undefined;
   }
@@ -477,7 +483,7 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
   const [chosen, choose] = useState(names[0] as string);
   const name = given ?? chosen;
   const field = fields[name] as Field;
-  const property = schema[of]?.[name];
+  const property = schema[of]?.properties?.[name];
   const change = (next: string) => {
     choose(next);
     if (path[0] === 'initial_state' && given) void rename(given, next);
