@@ -181,7 +181,7 @@ fn layers() {
         let met = arrival(&Scenario::new(Case { solver, ..case.clone() }).unwrap(), &NEVER).unwrap();
         let over = Over(case.clone());
         let limits = Limits { relative_tolerance: tolerance, steps: 100_000, interrupt: &NEVER };
-        let mut integrator = Integrator::new(&over, case.initial_state.into(), limits);
+        let mut integrator = Integrator::new(&over, 0.0, case.initial_state.into(), limits);
         while integrator.time() < met.time {
             integrator.advance(&over, met.time).unwrap();
         }

@@ -142,7 +142,7 @@ fn the_length_of_the_ground_track_is_that_of_an_independent_integration() {
         let [x, y, z, vx, vy, vz]: [f64; 6] = case.initial_state.into();
         let never = AtomicBool::new(false);
         let limits = Limits { relative_tolerance: 1e-13, steps: 100_000, interrupt: &never };
-        let mut integrator = Integrator::new(&system, [x, y, z, vx, vy, vz, 0.0], limits);
+        let mut integrator = Integrator::new(&system, 0.0, [x, y, z, vx, vy, vz, 0.0], limits);
         for part in [0.1, 0.5, 0.8, 0.9, 1.0] {
             let time = part * flight.end_time();
             while integrator.time() < time {

@@ -46,7 +46,7 @@ fn limits(relative_tolerance: f64, interrupt: &AtomicBool) -> Limits<'_> {
 /// One step of a given length, whatever its error.
 fn single_step(length: f64) -> Step<4> {
     let interrupt = AtomicBool::new(false);
-    let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-10, &interrupt));
+    let mut integrator = Integrator::new(&Kepler, 0.0, PERIAPSIS, limits(1e-10, &interrupt));
     let step = integrator.advance(&Kepler, length).unwrap();
     integrator.shorten(&Kepler, &step, length)
 }
@@ -95,7 +95,7 @@ fn the_global_error_follows_the_tolerance() {
     let mut before = f64::INFINITY;
     for exponent in [-4, -6, -8, -10, -12] {
         let tolerance = 10_f64.powi(exponent);
-        let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(tolerance, &interrupt));
+        let mut integrator = Integrator::new(&Kepler, 0.0, PERIAPSIS, limits(tolerance, &interrupt));
         let mut last = PERIAPSIS;
         let mut time = 0.0;
         while time < 20.0 {
@@ -127,7 +127,7 @@ fn evaluations_are_counted() {
     }
     let interrupt = AtomicBool::new(false);
     let system = Counting(Cell::new(0));
-    let mut integrator = Integrator::new(&system, [1.0], limits(1e-12, &interrupt));
+    let mut integrator = Integrator::new(&system, 0.0, [1.0], limits(1e-12, &interrupt));
     for _ in 0..5 {
         let step = integrator.advance(&system, 100.0).unwrap();
         integrator.shorten(&system, &step, step.time(0.5));
@@ -154,7 +154,7 @@ fn a_step_that_is_not_finite_is_rejected() {
         }
     }
     let interrupt = AtomicBool::new(false);
-    let mut integrator = Integrator::new(&Edge, [1.0], limits(1e-6, &interrupt));
+    let mut integrator = Integrator::new(&Edge, 0.0, [1.0], limits(1e-6, &interrupt));
     let mut time = 0.0;
     while time < 0.999 {
         let step = integrator.advance(&Edge, 0.999).unwrap();
@@ -185,14 +185,14 @@ fn a_system_without_a_finite_slope_is_refused() {
         }
     }
     let interrupt = AtomicBool::new(false);
-    let error = Integrator::new(&Nowhere, [1.0], limits(1e-6, &interrupt)).advance(&Nowhere, 1.0).unwrap_err();
+    let error = Integrator::new(&Nowhere, 0.0, [1.0], limits(1e-6, &interrupt)).advance(&Nowhere, 1.0).unwrap_err();
     assert_eq!(error, IntegrationError::StepTooSmall { time: 0.0 });
 }
 
 #[test]
 fn the_flag_ends_the_integration_before_the_next_step() {
     let interrupt = AtomicBool::new(false);
-    let mut integrator = Integrator::new(&Kepler, PERIAPSIS, limits(1e-6, &interrupt));
+    let mut integrator = Integrator::new(&Kepler, 0.0, PERIAPSIS, limits(1e-6, &interrupt));
     let step = integrator.advance(&Kepler, 100.0).unwrap();
     interrupt.store(true, std::sync::atomic::Ordering::Relaxed);
     let error = integrator.advance(&Kepler, 100.0).unwrap_err();
@@ -242,7 +242,7 @@ fn the_derivative_in_dual_numbers_has_the_same_value_and_the_right_slopes() {
 fn steps_followed_in_dual_numbers_end_at_the_same_digits_and_with_the_right_slopes() {
     let interrupt = AtomicBool::new(false);
     let fly = |speed: f64, tolerance: f64| {
-        let mut integrator = Integrator::new(&Kepler, [0.5, 0.0, 0.0, speed], limits(tolerance, &interrupt));
+        let mut integrator = Integrator::new(&Kepler, 0.0, [0.5, 0.0, 0.0, speed], limits(tolerance, &interrupt));
         let mut steps = Vec::new();
         while steps.last().is_none_or(|step: &Step<4>| step.end_time < 5.0) {
             steps.push(integrator.advance(&Kepler, 5.0).unwrap());

@@ -17,11 +17,14 @@ use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop,
 
 use super::flights::{capsule, fly, spherical, target_2, with_tolerance};
 
+/// Moves a number of a case by an offset.
+type Move = dyn Fn(&mut Case, f64);
+
 /// A number of a case, the size in which it is moved, and how.
 struct Number {
     name: &'static str,
     size: f64,
-    moved: Box<dyn Fn(&mut Case, f64)>,
+    moved: Box<Move>,
 }
 
 fn number(name: &'static str, size: f64, moved: impl Fn(&mut Case, f64) + 'static) -> Number {

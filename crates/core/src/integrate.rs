@@ -93,11 +93,11 @@ pub struct Integrator<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Integrator<'a, N> {
-    /// Starts at t = 0 with the given state.
-    pub fn new<F: StepBounds<N>>(system: &F, state: [f64; N], limits: Limits<'a>) -> Self {
-        let derivative = system.derivative(0.0, &state);
-        let mut control = StepControl::new(system, &state, &derivative, limits);
-        control.shorten(system.longest_step(0.0, &state));
+    /// Starts at a time, s, with the given state.
+    pub fn new<F: StepBounds<N>>(system: &F, time: f64, state: [f64; N], limits: Limits<'a>) -> Self {
+        let derivative = system.derivative(time, &state);
+        let mut control = StepControl::new(system, time, &state, &derivative, limits);
+        control.shorten(system.longest_step(time, &state));
         Self { control, state, derivative }
     }
 
@@ -235,21 +235,19 @@ struct StepControl<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> StepControl<'a, N> {
-    fn new<F: StepBounds<N>>(system: &F, state: &[f64; N], derivative: &[f64; N], limits: Limits<'a>) -> Self {
+    fn new<F: StepBounds<N>>(
+        system: &F,
+        time: f64,
+        state: &[f64; N],
+        derivative: &[f64; N],
+        limits: Limits<'a>,
+    ) -> Self {
         let magnitudes = system.magnitudes();
         #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
         let counted = magnitudes.iter().filter(|magnitude| magnitude.is_finite()).count() as f64;
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
-        let mut control = Self {
-            limits,
-            magnitudes,
-            counted,
-            time: 0.0,
-            length: 0.0,
-            stride: 0.0,
-            growth: GREATEST_GROWTH,
-            statistics,
-        };
+        let mut control =
+            Self { limits, magnitudes, counted, time, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
         control.length = control.first_step(system, state, derivative);
         control
     }
@@ -325,9 +323,9 @@ impl<'a, const N: usize> StepControl<'a, N> {
         };
         let first = norm(slope);
         let guess = if first > 0.0 { 0.01 * norm(state) / first } else { 1e-6 };
-        let guess = guess.min(system.longest_step(0.0, state));
+        let guess = guess.min(system.longest_step(self.time, state));
         let euler = from_fn(|i| state[i] + slope[i] * guess);
-        let next_slope = system.derivative(guess, &euler);
+        let next_slope = system.derivative(self.time + guess, &euler);
         let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
         let steepest = first.max(second);
         let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };

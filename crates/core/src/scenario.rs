@@ -101,7 +101,10 @@ pub struct Case {
     pub heating: Option<Heating>,
     /// The events, in the order of the request; each happens at most once.
     pub events: Vec<Event>,
-    /// The state at t = 0.
+    /// The time at which the flight starts, s: 0, or that at which a body is set free by another, whose clock it shares. At t = 0 lie the origin of
+    /// schedules by time, and the directions that stay in inertial space.
+    pub start_time: f64,
+    /// The state at the start.
     pub initial_state: PlanetFixed<f64>,
     /// The conditions that end the flight.
     pub stop: Stop,
@@ -271,7 +274,7 @@ impl Scenario {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
             }
-            let loads = case.forces().loads(0.0, &State::from(*state));
+            let loads = case.forces().loads(case.start_time, &State::from(*state));
             if !(loads.deceleration.is_finite() && loads.load_factor.is_finite()) {
                 faults.push(Fault::InfiniteAcceleration);
             }
@@ -302,7 +305,7 @@ impl Scenario {
 }
 
 impl Case {
-    /// A case of a vehicle and its planet-fixed state at t = 0, with the defaults of all else: the Earth of WGS 84 with gravity of its mass
+    /// A case of a vehicle and its planet-fixed state at t = 0, where it starts, with the defaults of all else: the Earth of WGS 84 with gravity of its mass
     /// alone, the exponential atmosphere of the thesis, still air, no bank angle, no heating and no events.
     pub fn new(vehicle: Vehicle, initial_state: PlanetFixed<f64>) -> Self {
         Self {
@@ -314,6 +317,7 @@ impl Case {
             control: Control::banked(0.0),
             heating: None,
             events: Vec::new(),
+            start_time: 0.0,
             initial_state,
             stop: Stop::default(),
             solver: Solver::default(),
@@ -324,7 +328,7 @@ impl Case {
     pub fn forces(&self) -> Forces {
         let mut forces = Phase::first(self).forces(self);
         // The flight refuses a start at which no mode holds.
-        let _ = forces.enter_mode_of(0.0, &State::from(self.initial_state));
+        let _ = forces.enter_mode_of(self.start_time, &State::from(self.initial_state));
         forces
     }
 

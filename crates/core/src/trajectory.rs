@@ -486,7 +486,7 @@ impl Trajectory {
     fn instant_at(&self, time: f64) -> Instant {
         let following = self.flown.steps.partition_point(|step| step.end_time() <= time);
         match self.flown.steps.get(following) {
-            _ if time <= 0.0 => self.flown.start,
+            _ if time <= self.flown.start.time => self.flown.start,
             Some(step) => {
                 let motion = self.motion(step);
                 let state = motion.interpolant(&step.step).at(&motion, time);
@@ -513,7 +513,7 @@ impl Trajectory {
                 following += 1;
             }
             match steps.get(following) {
-                _ if time <= 0.0 => self.initial(),
+                _ if time <= self.flown.start.time => self.initial(),
                 Some(step) => {
                     let (_, motion, interpolant) = match known.take() {
                         Some(of_leg) if of_leg.0 == following => known.insert(of_leg),

@@ -137,6 +137,7 @@ pub(super) fn out_of_bounds(case: &Case) -> Vec<Fault> {
         ("planet.polar_radius", polar_radius, Bound::PLANET_RADIUS),
         ("planet.rotation_rate", planet.rotation_rate, Bound::ROTATION_RATE),
         ("density_factor", *density_factor, Bound::NON_NEGATIVE),
+        ("start_time", case.start_time, Bound::TIME),
         ("stop.altitude", stop.altitude, Bound::DISTANCE),
         ("stop.time", stop.time, Bound::STOP_TIME),
         ("solver.relative_tolerance", solver.relative_tolerance, Bound::RELATIVE_TOLERANCE),

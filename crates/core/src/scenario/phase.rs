@@ -56,7 +56,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     /// That in which a flight begins.
     pub(crate) fn first(numbers: &impl Numbers<P>) -> Self {
         Self {
-            since: P::zero(),
+            since: P::from(numbers.case().start_time),
             vehicle: vehicle(numbers),
             aerodynamics_of: None,
             thrust: None,

@@ -131,7 +131,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             happened: 0,
             samples: vec![None; of.places.len()],
         };
-        follower.keep(Place::Start, Dual::from(0.0));
+        follower.keep(Place::Start, Dual::from(flight.flown.start.time));
         follower
     }
 

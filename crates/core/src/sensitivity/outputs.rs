@@ -261,7 +261,7 @@ fn place(flight: &Trajectory, output: &Output, interrupt: &dyn Interrupt) -> Res
         Moment::Time(time) => {
             let step = steps.partition_point(|step| step.end_time() <= time);
             let inside = |step: usize| (time < flight.end_time()).then_some(Place::Inside { step, time });
-            if time <= 0.0 { Some(Place::Start) } else { inside(step) }
+            if time <= flight.flown.start.time { Some(Place::Start) } else { inside(step) }
         }
         Moment::Peak => extremum(flight, &|point| (output.value)(point, None), interrupt)?,
         Moment::Lowest => extremum(flight, &|point| Some(-(output.value)(point, None)?), interrupt)?,

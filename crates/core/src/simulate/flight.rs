@@ -52,12 +52,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let case = scenario.case();
         let limits =
             Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
+        let time = case.start_time;
         let start = State::from(case.initial_state);
         let state = F::numbers(&State { mass: Some(case.vehicle.mass), heat_load: Some(0.0), ..start });
-        regular(&motion, 0.0, &state)?;
-        enter_mode_of(&mut motion, 0.0, &state)?;
-        let integrator = Integrator::new(&motion, state, limits);
-        let start = StateRate::of::<F, N>(0.0, &state, integrator.derivative());
+        regular(&motion, time, &state)?;
+        enter_mode_of(&mut motion, time, &state)?;
+        let integrator = Integrator::new(&motion, time, state, limits);
+        let start = StateRate::of::<F, N>(time, &state, integrator.derivative());
         let stop_altitude = StopAltitudeDetector::new(case.planet.shape, case.stop.altitude, &start);
         let model_boundaries = ModelBoundaryDetector::new(motion.forces(), &start);
         let conditions = ConditionDetector::new(case, motion.forces(), &start);
@@ -71,7 +72,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             model_boundaries,
             conditions,
             phase,
-            time: 0.0,
+            time,
             state,
             evaluations: 0,
             log,

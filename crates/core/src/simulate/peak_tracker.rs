@@ -33,17 +33,18 @@ impl PeakTracker {
         may_lift: bool,
     ) -> Result<Self, SimulationError> {
         let forces = motion.forces();
-        let start = StateRate::of::<F, N>(0.0, integrator.state(), integrator.derivative());
-        let loads = finite(loads_at(forces, &start), 0.0)?;
-        let peaks = peaks_at(&loads, 0.0);
+        let time = integrator.time();
+        let start = StateRate::of::<F, N>(time, integrator.state(), integrator.derivative());
+        let loads = finite(loads_at(forces, &start), time)?;
+        let peaks = peaks_at(&loads, time);
         let cone = may_lift.then(|| outside_cone(forces, &start));
         let faded = cone.is_some_and(|cone| cone.re < 0.0);
-        let warnings = if faded { vec![Warning::LiftFadedNearVertical { time: 0.0 }] } else { Vec::new() };
+        let warnings = if faded { vec![Warning::LiftFadedNearVertical { time }] } else { Vec::new() };
         let phase_and_mode = (0, forces.mode());
         let (peaks_of_phases, peaks_of_flight) = (Vec::new(), peaks);
         let mut peak_tracker =
             Self { loads, phase_and_mode, cone, faded, peaks, peaks_of_phases, peaks_of_flight, warnings };
-        peak_tracker.warn_outside_tables(forces, 0.0);
+        peak_tracker.warn_outside_tables(forces, time);
         Ok(peak_tracker)
     }
 

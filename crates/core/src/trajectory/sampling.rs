@@ -29,7 +29,7 @@ impl Trajectory {
     /// # Errors
     /// When there are more than `limit`.
     pub fn instants(&self, sampling: &Sampling, limit: usize) -> Result<Vec<f64>, TooManyInstants> {
-        let end = self.end_time();
+        let (start, end) = (self.flown.start.time, self.end_time());
         let wanted = match sampling {
             Sampling::PerStep(samples) => samples.saturating_mul(self.flown.steps.len()),
             Sampling::Count(count) => *count,
@@ -38,7 +38,7 @@ impl Trajectory {
         if wanted > limit {
             return Err(TooManyInstants { limit });
         }
-        let mut instants = Instants { times: vec![0.0], end, limit };
+        let mut instants = Instants { times: vec![start], start, end, limit };
         match sampling {
             Sampling::PerStep(samples) => {
                 for step in &self.flown.steps {
@@ -49,13 +49,13 @@ impl Trajectory {
             }
             Sampling::Interval(interval) => {
                 let mut sample = 1;
-                while instants.push(ratio(sample, 1) * interval)? {
+                while instants.push(start + ratio(sample, 1) * interval)? {
                     sample += 1;
                 }
             }
             Sampling::Count(count) => {
                 for sample in 1..count - 1 {
-                    instants.push(end * ratio(sample, count - 1))?;
+                    instants.push(start + (end - start) * ratio(sample, count - 1))?;
                 }
             }
             Sampling::Times(times) => {
@@ -71,6 +71,7 @@ impl Trajectory {
 /// Instants between the start and the end, as they are gathered.
 struct Instants {
     times: Vec<f64>,
+    start: f64,
     end: f64,
     limit: usize,
 }
@@ -79,7 +80,7 @@ impl Instants {
     /// Adds an instant that follows the last and comes before the end; false once the end is reached.
     fn push(&mut self, time: f64) -> Result<bool, TooManyInstants> {
         let inside = time < self.end;
-        let last = self.times.last().copied().unwrap_or(0.0);
+        let last = self.times.last().copied().unwrap_or(self.start);
         if inside && time > last {
             // The final instant still has to find a place.
             if self.times.len() + 1 >= self.limit {
@@ -91,7 +92,7 @@ impl Instants {
     }
 
     fn finish(mut self) -> Result<Vec<f64>, TooManyInstants> {
-        if self.end > 0.0 {
+        if self.end > self.start {
             self.times.push(self.end);
         }
         if self.times.len() > self.limit { Err(TooManyInstants { limit: self.limit }) } else { Ok(self.times) }

@@ -468,6 +468,7 @@ impl SimulateRequest {
             control: self.control.clone(),
             heating: self.heating.as_ref().map(|heating| heating.core),
             events: self.events.iter().map(|event| event.to_core(&self.events, &references)).collect(),
+            start_time: 0.0,
             initial_state,
             stop,
             solver: self.solver,
