@@ -140,8 +140,8 @@ pub(crate) struct Power {
     pub(crate) thrust: f64,
 }
 
-/// A formulation: `N` numbers that hold the state, and how they change. Six hold place and motion; with eight, the seventh is the mass, kg,
-/// and the eighth the heat load, J/m².
+/// A formulation: `N` numbers that hold the state, and how they change. Six hold place and motion; a seventh is the
+/// heat load, J/m², and an eighth the mass, kg.
 pub trait Formulation<const N: usize>: StepBounds<N> {
     /// The numbers of a state.
     fn numbers<S: Scalar>(state: &State<S>) -> [S; N];

@@ -7,7 +7,7 @@ mod phase;
 
 pub use bounds::Bound;
 
-pub(crate) use dispatch::{ForFormulation, FormulationIn, dispatch};
+pub(crate) use dispatch::{ForFormulation, FormulationIn, Held, dispatch};
 pub(crate) use numbers::Numbers;
 pub(crate) use phase::Phase;
 
@@ -353,13 +353,22 @@ impl Case {
                 .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along.is_level()))
     }
 
-    /// Whether states have to hold mass and heat load: the flight is heated, or a thrust burns propellant.
-    pub(crate) fn has_mass_and_heat_load(&self) -> bool {
-        self.heating.is_some() || self.burns_propellant()
+    /// What its states hold.
+    pub(crate) fn held(&self) -> Held {
+        self.held_with(self.heating.is_some())
+    }
+
+    /// What its states hold, with the heat load or without.
+    pub(crate) fn held_with(&self, heat_load: bool) -> Held {
+        match (self.burns_propellant(), heat_load) {
+            (true, _) => Held::HeatLoadAndMass,
+            (false, true) => Held::HeatLoad,
+            (false, false) => Held::Nothing,
+        }
     }
 
     /// Whether a thrust burns propellant.
-    pub(crate) fn burns_propellant(&self) -> bool {
+    fn burns_propellant(&self) -> bool {
         self.events.iter().filter_map(|event| event.then.thrust()).any(|thrust| thrust.specific_impulse.is_some())
     }
 

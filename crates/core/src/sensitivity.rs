@@ -84,9 +84,7 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<S
         interrupt,
     };
     let Some([Some(end)]) =
-        dispatch(case.solver.equations, case.burns_propellant() || waits_for_heat_load(case), follow)?
-            .first_chunk()
-            .cloned()
+        dispatch(case.solver.equations, case.held_with(waits_for_heat_load(case)), follow)?.first_chunk().cloned()
     else {
         return Ok(Sensitivities::NONE);
     };

@@ -2,18 +2,26 @@
 
 use super::Step;
 
-/// A step of states of place and motion alone, or with mass and heat load.
+/// A step of states of place and motion alone, or with heat load and mass.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyStep {
     /// Of place and motion.
     Six(Step<6>),
-    /// With mass and heat load.
+    /// With the heat load.
+    Seven(Step<7>),
+    /// With heat load and mass.
     Eight(Step<8>),
 }
 
 impl From<Step<6>> for AnyStep {
     fn from(step: Step<6>) -> Self {
         Self::Six(step)
+    }
+}
+
+impl From<Step<7>> for AnyStep {
+    fn from(step: Step<7>) -> Self {
+        Self::Seven(step)
     }
 }
 
@@ -28,6 +36,7 @@ impl AnyStep {
     pub(crate) fn start_time(&self) -> f64 {
         match self {
             Self::Six(step) => step.start_time,
+            Self::Seven(step) => step.start_time,
             Self::Eight(step) => step.start_time,
         }
     }
@@ -36,6 +45,7 @@ impl AnyStep {
     pub(crate) fn end_time(&self) -> f64 {
         match self {
             Self::Six(step) => step.end_time,
+            Self::Seven(step) => step.end_time,
             Self::Eight(step) => step.end_time,
         }
     }
@@ -44,6 +54,7 @@ impl AnyStep {
     pub(crate) fn time(&self, part: f64) -> f64 {
         match self {
             Self::Six(step) => step.time(part),
+            Self::Seven(step) => step.time(part),
             Self::Eight(step) => step.time(part),
         }
     }

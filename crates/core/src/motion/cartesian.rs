@@ -6,7 +6,7 @@ use crate::coordinates::PlanetFixed;
 use crate::integrate::{StepBounds, System};
 use crate::scalar::{Over, Scalar};
 
-/// The state (x, y, z, vx, vy, vz), in m and m/s, and maybe mass and heat load.
+/// The state (x, y, z, vx, vy, vz), in m and m/s, and maybe heat load and mass.
 #[derive(Clone, Debug)]
 pub struct Cartesian<P = f64>(pub Forces<P>);
 
@@ -19,15 +19,31 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Cartesian<P> {
     }
 }
 
-/// With the mass, kg, and the heat load, J/m².
+/// With the heat load, J/m².
+impl<P: Scalar, S: Over<P>> System<S, 7> for Cartesian<P> {
+    #[inline(always)]
+    fn derivative(&self, time: S, numbers: &[S; 7]) -> [S; 7] {
+        self.rates(time, numbers)
+    }
+}
+
+/// With the heat load, J/m², and the mass, kg.
 impl<P: Scalar, S: Over<P>> System<S, 8> for Cartesian<P> {
     #[inline(always)]
     fn derivative(&self, time: S, numbers: &[S; 8]) -> [S; 8] {
+        self.rates(time, numbers)
+    }
+}
+
+impl<P: Scalar> Cartesian<P> {
+    /// The rates of states that hold more than place and motion.
+    #[inline(always)]
+    fn rates<S: Over<P>, const N: usize>(&self, time: S, numbers: &[S; N]) -> [S; N] {
         let state = State::of(PlanetFixed::from(coordinates(numbers)), numbers);
         let (acceleration, heat_flux) = self.0.acceleration_and_heat_flux(time, &state);
-        let (velocity, mass_rate) = (state.velocity, self.0.mass_rate());
-        let [vx, vy, vz] = velocity.into();
-        [vx, vy, vz, acceleration.x, acceleration.y, acceleration.z, mass_rate, heat_flux]
+        let rates = PlanetFixed { position: state.velocity, velocity: acceleration };
+        let more = State { mass: Some(self.0.mass_rate()), heat_load: Some(heat_flux), ..state };
+        more.numbers(rates.into())
     }
 }
 

@@ -11,7 +11,7 @@ use crate::planet::Pull;
 use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar};
 
-/// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad, and maybe mass and heat load.
+/// The state (r, θ, φ, V, γ, ψ) of [`FlightPath`], in m, m/s and rad, and maybe heat load and mass.
 #[derive(Clone, Debug)]
 pub struct Spherical<P = f64>(pub Forces<P>);
 
@@ -26,10 +26,26 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     }
 }
 
-/// With the mass, kg, and the heat load, J/m².
+/// With the heat load, J/m².
+impl<P: Scalar, S: Over<P>> System<S, 7> for Spherical<P> {
+    #[inline(always)]
+    fn derivative(&self, time: S, numbers: &[S; 7]) -> [S; 7] {
+        self.rates_of_more(time, numbers)
+    }
+}
+
+/// With the heat load, J/m², and the mass, kg.
 impl<P: Scalar, S: Over<P>> System<S, 8> for Spherical<P> {
     #[inline(always)]
     fn derivative(&self, time: S, numbers: &[S; 8]) -> [S; 8] {
+        self.rates_of_more(time, numbers)
+    }
+}
+
+impl<P: Scalar> Spherical<P> {
+    /// The rates of states that hold more than place and motion.
+    #[inline(always)]
+    fn rates_of_more<S: Over<P>, const N: usize>(&self, time: S, numbers: &[S; N]) -> [S; N] {
         let coordinates = coordinates(numbers);
         let state = State::of(FlightPath::from(coordinates).to_planet_fixed(), numbers);
         let rates = self.rates_by_any(time, &coordinates, state.mass);

@@ -42,13 +42,13 @@ impl<S: Scalar> State<S> {
         }
     }
 
-    /// As the six numbers of place and motion in some coordinates, and, of eight, the mass and the heat load.
+    /// As the six numbers of place and motion in some coordinates, a seventh that is the heat load, and an eighth that is the mass.
     #[inline(always)]
     pub(super) fn numbers<const N: usize>(&self, coordinates: [S; 6]) -> [S; N] {
         std::array::from_fn(|i| match i {
-            0..6 => coordinates[i],
+            HEAT_LOAD => self.heat_load.unwrap_or_else(S::zero),
             MASS => self.mass.unwrap_or_else(S::zero),
-            _ => self.heat_load.unwrap_or_else(S::zero),
+            _ => coordinates[i],
         })
     }
 
@@ -74,7 +74,7 @@ pub(super) fn coordinates<S: Scalar, const N: usize>(numbers: &[S; N]) -> [S; 6]
     std::array::from_fn(|i| numbers[i])
 }
 
-/// The place of the mass among the numbers.
-pub(crate) const MASS: usize = 6;
 /// The place of the heat load among the numbers.
-const HEAT_LOAD: usize = 7;
+const HEAT_LOAD: usize = 6;
+/// The place of the mass among the numbers.
+pub(crate) const MASS: usize = 7;

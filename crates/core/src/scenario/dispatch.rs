@@ -62,16 +62,25 @@ pub(crate) trait ForFormulation {
         AnyStep: From<Step<N>>;
 }
 
-/// Does a computation with the formulation that a case asks for, whose states hold mass and heat load or do not.
-pub(crate) fn dispatch<C: ForFormulation>(
-    equations: Equations,
-    with_mass_and_heat_load: bool,
-    computation: C,
-) -> C::Output {
-    match (equations, with_mass_and_heat_load) {
-        (Equations::Cartesian, false) => computation.with::<Cartesian, 6>(),
-        (Equations::Spherical, false) => computation.with::<Spherical, 6>(),
-        (Equations::Cartesian, true) => computation.with::<Cartesian, 8>(),
-        (Equations::Spherical, true) => computation.with::<Spherical, 8>(),
+/// What a state holds beside place and motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// Nothing more.
+    Nothing,
+    /// The heat load.
+    HeatLoad,
+    /// The heat load and the mass.
+    HeatLoadAndMass,
+}
+
+/// Does a computation with the formulation that a case asks for, whose states hold so much.
+pub(crate) fn dispatch<C: ForFormulation>(equations: Equations, held: Held, computation: C) -> C::Output {
+    match (equations, held) {
+        (Equations::Cartesian, Held::Nothing) => computation.with::<Cartesian, 6>(),
+        (Equations::Spherical, Held::Nothing) => computation.with::<Spherical, 6>(),
+        (Equations::Cartesian, Held::HeatLoad) => computation.with::<Cartesian, 7>(),
+        (Equations::Cartesian, Held::HeatLoadAndMass) => computation.with::<Cartesian, 8>(),
+        (Equations::Spherical, Held::HeatLoad) => computation.with::<Spherical, 7>(),
+        (Equations::Spherical, Held::HeatLoadAndMass) => computation.with::<Spherical, 8>(),
     }
 }

@@ -83,6 +83,11 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         self.thrust.map(|thrust| Thrust { propellant: thrust.propellant.map(left), ..thrust })
     }
 
+    /// Whether nothing changes in it by time alone.
+    pub(crate) fn is_still(&self) -> bool {
+        self.thrust.is_none() && self.canopies.is_empty()
+    }
+
     /// When the propellant is spent, s.
     pub(crate) fn burnout(&self) -> Option<P> {
         let thrust = self.thrust?;

@@ -119,7 +119,7 @@ fn chunk<const W: usize>(
         with_ground_distance: true,
         interrupt,
     };
-    let samples = dispatch(case.solver.equations, case.has_mass_and_heat_load(), follow)?;
+    let samples = dispatch(case.solver.equations, case.held(), follow)?;
     let varied = Varied::<W> { case, variations };
     for (((sample, place), output), row) in samples.iter().zip(places).zip(outputs).zip(slopes) {
         let Some(sample) = sample.as_ref().filter(|_| place.is_some()) else {

@@ -115,8 +115,10 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if !self.conditions.is_empty() {
             end = end.min(self.conditions.next_time());
         }
-        let of_phase = [self.phase.next_change(), self.phase.last_instant()];
-        of_phase.into_iter().flatten().fold(end, f64::min)
+        if self.phase.is_still() {
+            return end;
+        }
+        [self.phase.next_change(), self.phase.last_instant()].into_iter().flatten().fold(end, f64::min)
     }
 
     /// Takes a step.
@@ -401,9 +403,12 @@ fn enter_mode_of<F: Formulation<N>, const N: usize>(
 /// Whether a braking thrust has brought the vehicle to rest, as near as the steps or the equations come to it.
 fn halts<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64; N]) -> bool {
     let forces = motion.forces();
+    if !forces.thrusts_by_velocity() {
+        return false;
+    }
     let named = F::state(state);
-    let at_rest = || forces.is_at_rest(&named) || motion.singularity(state, SINGULAR) == Some(Singularity::Rest);
-    forces.thrusts_by_velocity() && at_rest() && forces.brakes_to_rest(time, &named)
+    let at_rest = forces.is_at_rest(&named) || motion.singularity(state, SINGULAR) == Some(Singularity::Rest);
+    at_rest && forces.brakes_to_rest(time, &named)
 }
 
 /// Refuses a state in which the equations break down.
