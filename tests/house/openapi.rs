@@ -65,6 +65,48 @@ fn the_committed_document_is_that_of_the_service() {
     assert!(committed == format!("{:#}\n", document()), "openapi/openapi.json is out of date: run `make openapi`");
 }
 
+/// Forms are made of the document: a field has a label, and a number its unit.
+#[test]
+fn every_field_of_a_request_has_a_label_and_every_angle_says_so() {
+    let document = document();
+    let schemas = document["components"]["schemas"].as_object().unwrap();
+    let mut open = ENDPOINTS.map(|(_, request, _)| request.to_owned()).to_vec();
+    let mut seen = BTreeSet::new();
+    let mut angles = BTreeSet::new();
+    let mut count = 0;
+    while let Some(name) = open.pop() {
+        if !seen.insert(name.clone()) {
+            continue;
+        }
+        let schema = &schemas[&name];
+        // Generators of clients would name the type by it.
+        assert!(schema["title"].is_null(), "{name} has a title");
+        for (field, property) in schema["properties"].as_object().into_iter().flatten() {
+            for text in ["title", "description"] {
+                assert!(property[text].as_str().is_some_and(|text| !text.is_empty()), "{name}.{field} has no {text}");
+            }
+            if property["x-unit"] == "angle" {
+                angles.insert(field.clone());
+            }
+            count += 1;
+        }
+        let text = schema.to_string();
+        let named = text.split("\"#/components/schemas/").skip(1);
+        open.extend(named.filter_map(|rest| rest.split('"').next()).map(str::to_owned));
+    }
+    assert!(count > 130, "only {count} fields");
+    for field in fields() {
+        let name = field.pointer.rsplit('/').next().unwrap();
+        match field.kind {
+            // Their unit is that of the quantity.
+            _ if ["falls_through", "rises_through", "value"].contains(&name) => {}
+            Kind::Angle(_) | Kind::Command(_) => assert!(angles.contains(name), "{} is no angle", field.pointer),
+            Kind::Number(_) => assert!(!angles.contains(name), "{} is an angle", field.pointer),
+            _ => {}
+        }
+    }
+}
+
 #[test]
 fn good_requests_and_every_example_file_are_valid() {
     for (path, request, _) in ENDPOINTS {

@@ -1,4 +1,4 @@
-//! The OpenAPI document: what utoipa derives from the types, made as strict as the service is.
+//! The OpenAPI document: paths and answers as utoipa derives them, and requests as they are described.
 
 use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
@@ -12,7 +12,8 @@ use crate::wire::request_schemas;
 #[openapi(
     info(
         title = "reentry",
-        description = "Flies vehicles back through the atmosphere. SI units; angles in `angle_unit`; an unknown field is an error.",
+        description = "Flies vehicles back through the atmosphere. SI units; angles in `angle_unit`; an unknown field is an error. \
+                       A field's `x-unit` is its unit, `angle` for the one of `angle_unit`.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0"),
     ),
     tags(
