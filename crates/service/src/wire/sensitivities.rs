@@ -43,7 +43,7 @@ const MOST_OUTPUTS: usize = 64;
 /// The field `sensitivities` of a request.
 pub(super) fn asked(object: &mut Object) -> Option<Asked> {
     object
-        .field("sensitivities", "Sensitivities").doc("Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV or on \
+        .field("sensitivities", "Sensitivities of the end").doc("Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV or on \
              a map.")
         .default(false)
         .boolean_or(&SENSITIVITIES, |asked| if asked { Asked::OfTheEnd } else { Asked::Nothing }, matrix)

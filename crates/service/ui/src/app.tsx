@@ -2,7 +2,7 @@ import { useSignal } from '@preact/signals';
 import type { ComponentType } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import { address, type Case } from './api';
-import { Cards, Computing, Problems, Sensitivities, Warnings } from './cards';
+import { Cards, Computing, Dispersions, Problems, Sensitivities, Warnings } from './cards';
 import { Compare, Pin, Theories } from './compare';
 import { open, opened, start } from './fly';
 import { Form } from './form/form';
@@ -327,6 +327,7 @@ function FlightView() {
       {Maps ? <Maps /> : <p class="quiet map-space">The map is loading …</p>}
       <Theories />
       <Sensitivities />
+      <Dispersions />
       <Computing />
     </>
   );

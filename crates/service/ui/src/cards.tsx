@@ -1,4 +1,5 @@
 import { useComputed } from '@preact/signals';
+import type { Schemas } from './api';
 import { turned } from './case';
 import { figuresOf, number } from './figures';
 import { type Name, QUANTITIES } from './quantities';
@@ -101,11 +102,12 @@ export function Computing() {
 
 const ENDS = { time: 's', longitude: '', geocentric_latitude: '', speed: 'm/s', flight_path_angle: '' } as const;
 
-/** The derivatives of the end, where they were asked. */
+/** The derivatives, where they were asked. */
 export function Sensitivities() {
   const answer = current.value?.flight.answer;
   const sensitivities = answer?.sensitivities;
   if (!sensitivities) return null;
+  if ('matrix' in sensitivities) return <Matrix of={sensitivities} unit={answer.angle_unit} />;
   const ends = Object.keys(ENDS) as (keyof typeof ENDS)[];
   const causes = Object.keys(sensitivities.time) as (keyof typeof sensitivities.time)[];
   const isAngle = (name: string) => name in QUANTITIES && QUANTITIES[name as Name].angle;
@@ -133,6 +135,76 @@ export function Sensitivities() {
                 {ends.map((end) => (
                   <td key={end}>{number((sensitivities[end][cause] ?? Number.NaN) * (turn(end) / turn(cause)), 5)}</td>
                 ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+    </section>
+  );
+}
+
+/** Derivatives of outputs by numbers of the case, in the units of the case. */
+function Matrix({ of, unit }: { of: Schemas['Matrix']; unit: string }) {
+  return (
+    <section aria-label="Sensitivities">
+      <h2>Sensitivities</h2>
+      <Scroll label="Table of sensitivities">
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">by</th>
+              {of.of.map(({ quantity, time }, row) => (
+                <th scope="col" key={`${quantity}${row}`}>
+                  {quantity.replaceAll('_', ' ')}
+                  {time === null ? '' : ` at ${number(time)} s`}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {of.to.map(({ pointer }, column) => (
+              <tr key={pointer}>
+                <th scope="row">{pointer}</th>
+                {of.matrix.map((slopes, row) => (
+                  <td key={`${pointer}${row}`}>{number(slopes[column] ?? Number.NaN, 5)}</td>
+                ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+      <p class="quiet">In the units of the case; its angles are in {unit}.</p>
+    </section>
+  );
+}
+
+/** How far the landing scatters, where dispersions were given. */
+export function Dispersions() {
+  const answer = current.value?.flight.answer;
+  if (!answer?.covariance) return null;
+  const { landing, dispersions } = answer.covariance;
+  const azimuth = landing.azimuth === null ? Number.NaN : (turned(landing.azimuth, answer.angle_unit, angleUnit.value) as number);
+  return (
+    <section aria-label="Dispersions">
+      <h2>Dispersions of the landing</h2>
+      <p>
+        The ellipse of one standard deviation: {number(landing.semi_major_axis ?? Number.NaN, 4)} m by{' '}
+        {number(landing.semi_minor_axis ?? Number.NaN, 4)} m, its major axis at {number(azimuth, 4)} {angleUnit.value} from north.
+      </p>
+      <Scroll label="Table of dispersions">
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">by</th>
+              <th scope="col">share of the variance</th>
+            </tr>
+          </thead>
+          <tbody>
+            {dispersions.map(({ pointers, share }) => (
+              <tr key={pointers.join()}>
+                <th scope="row">{pointers.join(', ')}</th>
+                <td>{number((share ?? Number.NaN) * 100, 3)} %</td>
               </tr>
             ))}
           </tbody>

@@ -217,7 +217,7 @@ function modelsOf({ planet, atmosphere, epoch, heating, events }: Case): string 
 async function predicted(tree: Case, rows: number, signal: AbortSignal): Promise<{ theory: Theory | null; problem: Problem | null }> {
   const beside = solution.peek();
   if (!beside) return { theory: null, problem: null };
-  const { heating: _, sensitivities: __, verify: ___, echo: ____, ...flight } = tree;
+  const { heating: _, sensitivities: __, dispersions: ___, verify: ____, echo: _____, ...flight } = tree;
   try {
     return {
       theory: await analytic({ ...flight, solution: beside, output: { samples_per_step: samplesFor(rows) } }, signal),

@@ -80,7 +80,7 @@ export function Take() {
 function bodyFor(format: (typeof FORMATS)[number]): Case {
   const tree = tidied(draft.value);
   if (format === 'json') return tree;
-  const { sensitivities: _, verify: __, ...flight } = tree;
+  const { sensitivities: _, dispersions: __, verify: ___, ...flight } = tree;
   return format === 'csv' ? flight : tidied(set(flight, ['output', 'columns'], undefined));
 }
 

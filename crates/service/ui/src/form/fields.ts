@@ -7,7 +7,10 @@ export type Field =
   /** A number; an angle has the unit of the case. Of fields with the same `choice`, exactly one is given. */
   | { kind: 'number'; label: string; unit?: string; isAngle?: true; choice?: string }
   | { kind: 'text'; label: string; hint?: string; choice?: string }
-  | { kind: 'flag'; label: string }
+  /** True or false; with `orObject`, an object that is written as JSON counts as true. */
+  | { kind: 'flag'; label: string; orObject?: true }
+  /** Written as JSON alone. */
+  | { kind: 'json'; label: string }
   /** One of several words. */
   | { kind: 'words'; label: string; words: Record<string, string>; choice?: string }
   /** Three numbers. */
@@ -150,6 +153,7 @@ function fieldOf(property: Property, schemaName: string, name: string): Field {
   const label = property.title ?? name;
   const unit = property['x-unit'];
   const measured = unit === 'angle' ? { isAngle: true as const } : unit ? { unit } : {};
+  if (place === 'SimulateRequest.dispersions') return { kind: 'json', label };
   const hint = HINTS[place] ? { hint: HINTS[place] } : {};
   if (property.$ref) return referred(nameOf(property.$ref), label, measured, place);
   switch (property.type) {
@@ -178,6 +182,8 @@ function fieldOf(property: Property, schemaName: string, name: string): Field {
 /** The field of a schema with a name. */
 function referred(name: string, label: string, measured: { unit?: string; isAngle?: true }, place: string): Field {
   switch (name) {
+    case 'AskedSensitivities':
+      return { kind: 'flag', label, orObject: true };
     case 'Command':
       return { kind: 'command', label };
     case 'Along':

@@ -110,6 +110,8 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
           <Control field={field} path={path} property={property} />
         </Line>
       );
+    case 'json':
+      return null;
     case 'vector':
       return <Vector label={field.label} unit={field.unit} path={path} property={property} />;
     case 'matrix':
@@ -265,7 +267,7 @@ function Control({ field, path, property, name }: ItemProps) {
         <input
           id={input.id}
           type="checkbox"
-          checked={value === true}
+          checked={value === true || (field.orObject === true && typeof value === 'object')}
           onChange={(event) => put(path, event.currentTarget.checked ? true : undefined)}
         />
       );

@@ -44,6 +44,8 @@ function isDeeper(value: unknown, levels: number): boolean {
 function faultsOf(value: unknown, field: Field, path: Path): string[] {
   if (value === undefined) return [];
   const isSingle = typeof value !== 'object' || value === null;
+  // The forms do not look inside.
+  if (field.kind === 'json' || (field.kind === 'flag' && field.orObject && isObject(value))) return [];
   switch (field.kind) {
     case 'group':
       return ofObject(value, field.fields, path);
