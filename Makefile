@@ -4,6 +4,7 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 UI := crates/service/ui
+PYTEST = REENTRY=$(TARGET)/release/reentry OVERLOAD=$(TARGET)/debug/examples/overload $(VENV)/bin/python -B -m pytest
 FUZZ := $(TARGET)/tools/bin/cargo-fuzz
 # How long `make fuzz` runs each target, and on which sanitizer; those beside `none` need a nightly Rust.
 SECONDS := 60
@@ -34,11 +35,24 @@ $(PAGE): $(UI)/node_modules/.package-lock.json $(PAGE_SOURCES)
 $(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
 	cd $(UI) && npm ci --no-audit --no-fund
 
-# The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped.
-test: browser $(VENV)/ready build ## Run all tests
+# The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped. What leaves a processor idle goes
+# beside something else: the program is linked while the tests are compiled, and the page is tried while requests are made up.
+test: browser $(VENV)/ready ui ## Run all tests
+	$(MAKE) --jobs=2 build compiled-tests
 	cd $(UI) && npm test
 	cargo test --locked --workspace
-	REENTRY=$(TARGET)/release/reentry OVERLOAD=$(TARGET)/debug/examples/overload $(VENV)/bin/python -B -m pytest tests/live
+	$(PYTEST) tests/live --ignore tests/live/test_contract.py
+	$(MAKE) --jobs=2 contract e2e
+
+# Each is a part of `make test`.
+.PHONY: compiled-tests contract e2e
+compiled-tests:
+	cargo test --locked --workspace --no-run
+
+contract:
+	$(PYTEST) tests/live/test_contract.py
+
+e2e:
 	cd $(UI) && REENTRY=$(abspath $(TARGET))/release/reentry CHROMIUM=$(abspath $(TARGET))/chromium/run npm run e2e
 
 check: ui $(VENV)/ready ## Check form, lints, types, documentation, licences of dependencies, and the Dockerfile

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
-use reentry::heating::{Convective, Heating, Radiative};
+use reentry::heating::Heating;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::sensitivity::sensitivities;
 use reentry::trajectory::Termination;
@@ -276,7 +276,7 @@ fn derivatives_pass_through_a_condition_on_the_heat_load() {
     let opens = Effect { reference_area: Some(2.0), ..Effect::default() };
     let mut case = target_2();
     case.vehicle.nose_radius = Some(0.5);
-    case.heating = Some(Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.8 });
+    case.heating = Some(Heating { emissivity: 0.8, ..Heating::default() });
     let total = fly(&case).last().heat_load.unwrap();
     case.events = vec![event(rises(Quantity::HeatLoad, 0.5 * total), opens)];
     let [slope, difference] = slope_and_difference(&case);

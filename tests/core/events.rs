@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use reentry::coordinates::{Inertial, OrbitalElements};
 use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
-use reentry::heating::{Convective, Heating, Radiative};
+use reentry::heating::Heating;
 use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{Fault, ScenarioError};
 use reentry::simulate::{arrival, arrivals};
@@ -122,7 +122,7 @@ fn heated() -> Case {
     let start = FlightPath { speed: 7700.0, ..FlightPath::from_planet_fixed(&capsule().initial_state) };
     Case {
         vehicle: Vehicle { nose_radius: Some(1.2), ..capsule().vehicle },
-        heating: Some(Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.8 }),
+        heating: Some(Heating { emissivity: 0.8, ..Heating::default() }),
         initial_state: start.to_planet_fixed(),
         stop: Stop { when: vec![falls(Quantity::Speed, 1000.0).into()], ..Stop::default() },
         ..capsule()

@@ -18,7 +18,7 @@ const CM2: f64 = 1e4;
 
 fn heated(case: Case, convective: Convective, radiative: Radiative) -> Case {
     let vehicle = Vehicle { nose_radius: Some(0.5), ..case.vehicle };
-    Case { vehicle, heating: Some(Heating { convective, radiative, emissivity: 0.85 }), ..case }
+    Case { vehicle, heating: Some(Heating { convective, radiative, ..Heating::default() }), ..case }
 }
 
 /// A blunt capsule that comes back from the Moon, into standard air.
@@ -283,8 +283,7 @@ fn a_correlation_outside_its_range_is_a_warning() {
         |radius: f64| Case { vehicle: Vehicle { nose_radius: Some(radius), ..slow.vehicle.clone() }, ..slow.clone() };
     let flight = |radius: f64| {
         let case = small(radius);
-        let heating =
-            Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::TauberSutton, emissivity: 1.0 };
+        let heating = Heating { radiative: Radiative::TauberSutton, emissivity: 1.0, ..Heating::default() };
         fly(&Case { heating: Some(heating), ..case })
     };
     let nose = |radius: f64| {
@@ -304,7 +303,7 @@ fn without_air_or_speed_there_is_no_heat() {
         let flight = fly(&heated(vacuum.clone(), convective, Radiative::TauberSutton));
         let HeatingPeaks { heat_flux, heat_load, wall_temperature, .. } = peaks(&flight);
         assert!([heat_flux, heat_load, wall_temperature].iter().all(|peak| peak.value.to_bits() == 0));
-        let heating = Heating { convective, radiative: Radiative::TauberSutton, emissivity: 0.85 };
+        let heating = Heating { convective, radiative: Radiative::TauberSutton, ..Heating::default() };
         let at_rest = Stagnation::new(heating, 0.5).heat_flux(
             0,
             num_dual::Dual64::new(1.2, 1.0),

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
-use reentry::heating::{Convective, Heating, Radiative};
+use reentry::heating::Heating;
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
 use reentry::parachute::Parachute;
@@ -348,7 +348,7 @@ fn sensitivities_hold_across_events() {
         &stopped(Condition { direction: Direction::Rising, ..when(Quantity::LoadFactor, 2.0) }),
     );
     let heated = Vehicle { nose_radius: Some(0.1), ..target_2().vehicle };
-    let heating = Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.9 };
+    let heating = Heating { emissivity: 0.9, ..Heating::default() };
     agrees_with_differences("heated", &Case { vehicle: heated, heating: Some(heating), ..target_2() });
 }
 

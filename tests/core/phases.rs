@@ -1,7 +1,7 @@
 //! The phases of a flight, between the events that change the vehicle, and their peaks.
 
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
-use reentry::heating::{Convective, Heating, Radiative};
+use reentry::heating::{Heating, Radiative};
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::trajectory::{FlightPhase, FlightPoint, Peak, PhaseStart};
@@ -40,11 +40,7 @@ fn thrust(force: f64, propellant: Option<f64>) -> Effect {
 fn heated() -> Case {
     Case {
         vehicle: Vehicle { nose_radius: Some(1.0), ..capsule().vehicle },
-        heating: Some(Heating {
-            convective: Convective::SUTTON_GRAVES,
-            radiative: Radiative::TauberSutton,
-            emissivity: 0.85,
-        }),
+        heating: Some(Heating { radiative: Radiative::TauberSutton, ..Heating::default() }),
         ..capsule()
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
-use reentry::heating::{Convective, Heating, Radiative};
+use reentry::heating::Heating;
 use reentry::parachute::Parachute;
 use reentry::planet::{Gravity, Zonal};
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
@@ -157,7 +157,9 @@ fn trigger(case: &mut Case, event: usize) -> &mut f64 {
     }
 }
 
-const HEATING: Heating = Heating { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.9 };
+fn heating() -> Heating {
+    Heating { emissivity: 0.9, ..Heating::default() }
+}
 
 /// TARGET case 2 with a burn, an impulse after it, a change of mass and a parachute, heated.
 fn eventful() -> Case {
@@ -169,7 +171,7 @@ fn eventful() -> Case {
     let when = Trigger::After { event: 0, delay: 4.0 };
     Case {
         vehicle: Vehicle { nose_radius: Some(0.3), ..target_2().vehicle },
-        heating: Some(HEATING),
+        heating: Some(heating()),
         events: vec![
             at_altitude(70e3, Effect { engine: Some(Engine::On(burn)), ..Effect::default() }),
             Event { when, then: Effect { impulse: Some(push), ..Effect::default() } },
@@ -239,7 +241,7 @@ fn slopes_by_the_numbers_of_the_models_are_differences() {
         },
         wind: winds(0.0),
         vehicle: Vehicle { aerodynamics: drags(0.0), nose_radius: Some(0.8), ..capsule().vehicle },
-        heating: Some(HEATING),
+        heating: Some(heating()),
         control: banks(0.0, 0.0, Interpolation::Step),
         events: vec![at_altitude(50e3, Effect::default())],
         ..capsule()

@@ -23,6 +23,13 @@ pub struct Heating {
     pub emissivity: f64,
 }
 
+/// Sutton and Graves's convection in air, no radiation, and the emissivity of a wall that is meant to radiate.
+impl Default for Heating {
+    fn default() -> Self {
+        Self { convective: Convective::SUTTON_GRAVES, radiative: Radiative::None, emissivity: 0.85 }
+    }
+}
+
 /// Correlations of the convective flux.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Convective {

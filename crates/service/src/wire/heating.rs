@@ -61,20 +61,21 @@ pub(super) fn heating(object: &mut Object) -> Option<Heating> {
         "The heating of the stagnation point, whose `nose_radius` the vehicle then must have: fluxes into a cold wall, their integral, and the \
          temperature of a wall that radiates as much as it gets.",
     );
+    let default = CoreHeating::default();
     let convective = object
         .field("convective", "Convective")
         .doc("The flux by convection: a correlation for air by its name, or that of Sutton and Graves with the constant of another gas.")
-        .default("sutton_graves")
+        .default(CONVECTIVE.of((default.convective, true)))
         .word_or(&CONVECTIVE_FLUX, &CONVECTIVE, sutton_graves);
     let radiative = object
         .field("radiative", "Radiative")
         .doc("The flux by radiation of the shocked air.")
-        .default("none")
+        .default(RADIATIVE.of(default.radiative))
         .word(&RADIATIVE);
     let emissivity = object
         .field("emissivity", "Emissivity of the wall")
         .doc("Of the wall, from 0 to 1.")
-        .default(0.85)
+        .default(default.emissivity)
         .number(Bound::EMISSIVITY);
     let (convective, convective_in_air) = convective?;
     let core = CoreHeating { convective, radiative: radiative?, emissivity: emissivity? };
