@@ -163,11 +163,9 @@ impl Solution {
             Aerodynamics::Ballistic { lift_to_drag, .. } => [of_lift(lift_to_drag), None, None],
             Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => [Some(Fault::NotConstant), None, None],
         };
-        let of_air = match *atmosphere {
-            Atmosphere::Exponential { surface_density, .. } => (surface_density == 0.0).then_some(Fault::NoAir),
-            Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => {
-                Some(Fault::NotExponential)
-            }
+        let of_air = match atmosphere.surface_density() {
+            Some(surface_density) => (surface_density == 0.0).then_some(Fault::NoAir),
+            None => Some(Fault::NotExponential),
         };
         let of_factor = (density_factor == 0.0).then_some(Fault::NoDensity);
         of_vehicle.into_iter().chain([of_air, of_factor]).flatten().collect()

@@ -17,6 +17,9 @@ const SENSIBLE_SCALE_HEIGHTS: f64 = 37.0;
 /// What stands for a scale height where there is no air, m.
 const VACUUM_SCALE_HEIGHT: f64 = 10e3;
 
+/// The density at altitude 0, kg/m³, and the scale height, m, of the thesis (Jameson 2006, equations 39 and 40).
+pub const EARTH_JAMESON: [f64; 2] = [1.547_93, 6935.0];
+
 /// A model of the atmosphere, by the altitude along the radius vector; it turns with the planet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Atmosphere {
@@ -55,7 +58,18 @@ pub struct AtmosphereSample<S> {
 
 impl Atmosphere {
     /// The exponential atmosphere of the thesis.
-    pub const EARTH_JAMESON: Self = Self::Exponential { surface_density: 1.547_93, scale_height: 6935.0 };
+    pub const EARTH_JAMESON: Self = {
+        let [surface_density, scale_height] = EARTH_JAMESON;
+        Self::Exponential { surface_density, scale_height }
+    };
+
+    /// The density at altitude 0, kg/m³, where that is a number of the model: of the exponential one alone.
+    pub(crate) fn surface_density(&self) -> Option<f64> {
+        match self {
+            Self::Exponential { surface_density, .. } => Some(*surface_density),
+            _ => None,
+        }
+    }
 
     /// The altitudes, m, ascending, at which the formula changes: between them lie the segments, of which the first, 0, has no lower
     /// end, and the last no upper one.

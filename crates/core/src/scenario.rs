@@ -436,10 +436,7 @@ impl Case {
             }
             Aerodynamics::MachTable(_) | Aerodynamics::AlphaMachTable(_) => [*mass, *reference_area, lift, drag],
         };
-        let density = numbers.number(|case| match case.atmosphere {
-            Atmosphere::Exponential { surface_density, .. } => surface_density * case.density_factor,
-            Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => case.density_factor,
-        });
+        let density = numbers.number(|case| case.atmosphere.surface_density().unwrap_or(1.0) * case.density_factor);
         let bank_angle = numbers.number(|case| match case.control.bank_angle {
             Command::Constant(angle) => angle,
             Command::Schedule(_) => 0.0,

@@ -170,12 +170,10 @@ const STEP: f64 = 1e-3;
 
 /// The slopes by the density at altitude 0 and by the density factor, from that by whichever of them varied.
 fn of_density(case: &Case, slope: f64) -> [f64; 2] {
-    match case.atmosphere {
-        Atmosphere::Exponential { surface_density, .. } if case.density_factor != 0.0 => {
-            [slope, slope * surface_density / case.density_factor]
-        }
-        Atmosphere::Exponential { .. } => [0.0, slope],
-        Atmosphere::Vacuum | Atmosphere::Us76 | Atmosphere::Layers(_) | Atmosphere::Table(_) => [f64::NAN, slope],
+    match case.atmosphere.surface_density() {
+        Some(surface_density) if case.density_factor != 0.0 => [slope, slope * surface_density / case.density_factor],
+        Some(_) => [0.0, slope],
+        None => [f64::NAN, slope],
     }
 }
 

@@ -189,7 +189,8 @@ impl Forces {
         let atmosphere = match self.models.atmosphere {
             Atmosphere::Table(_) => Some(TableId::Atmosphere),
             Atmosphere::Us76 => Some(TableId::Us76),
-            Atmosphere::Vacuum | Atmosphere::Layers(_) | Atmosphere::Exponential { .. } => None,
+            // The others hold everywhere.
+            _ => None,
         };
         let tables = [
             (Switch::Atmosphere, atmosphere),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use reentry::atmosphere::{Atmosphere as CoreAtmosphere, Gas, Layer, Layers, Table};
+use reentry::atmosphere::{Atmosphere as CoreAtmosphere, EARTH_JAMESON, Gas, Layer, Layers, Table};
 use reentry::scenario::Bound;
 use serde_json::json;
 
@@ -78,18 +78,20 @@ fn vacuum(object: &mut Object) -> Option<Atmosphere> {
 }
 
 fn exponential(object: &mut Object) -> Option<Atmosphere> {
-    // Those of `CoreAtmosphere::EARTH_JAMESON`.
-    const EARTH: [f64; 2] = [1.547_93, 6935.0];
     object.named("ExponentialAtmosphere", "Density ρ₀ e^(-h/H) at the altitude h along the radius vector.");
     let is_given = object.has("surface_density") & object.has("scale_height");
     let surface_density = object
         .field("surface_density", "Density at the surface")
         .doc("ρ₀, at altitude 0, kg/m³.")
         .unit("kg/m³")
-        .default(EARTH[0])
+        .default(EARTH_JAMESON[0])
         .number(Bound::NON_NEGATIVE);
-    let scale_height =
-        object.field("scale_height", "Scale height").doc("H, m.").unit("m").default(EARTH[1]).number(Bound::POSITIVE);
+    let scale_height = object
+        .field("scale_height", "Scale height")
+        .doc("H, m.")
+        .unit("m")
+        .default(EARTH_JAMESON[1])
+        .number(Bound::POSITIVE);
     let core = CoreAtmosphere::Exponential { surface_density: surface_density?, scale_height: scale_height? };
     let remedy = "Default density and scale height are the Earth's: give surface_density and scale_height";
     Some(if is_given { Atmosphere::of(core) } else { Atmosphere::of_earth(core, remedy) })
