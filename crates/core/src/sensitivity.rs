@@ -12,7 +12,7 @@ pub use outputs::{Moment, Moved, Output, Slopes, slopes};
 pub use variation::Variation;
 
 use crate::atmosphere::Atmosphere;
-use crate::coordinates::FlightPath;
+use crate::coordinates::{FlightPath, PlanetFixed};
 use crate::event::{Quantity, Trigger};
 use crate::interrupt::Interrupt;
 use crate::scenario::{Case, dispatch};
@@ -20,7 +20,7 @@ use crate::simulate::SimulationError;
 use crate::trajectory::Trajectory;
 use crate::vehicle::Aerodynamics;
 use follow::{Follow, Place};
-use variation::Varied;
+use variation::{Dual, Varied};
 
 /// How a quantity changes with the numbers of a case, each by itself: SI units and radians over SI units and radians.
 ///
@@ -77,7 +77,7 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<S
     let variations = of_gradient(case);
     let follow = Follow::<INPUTS> {
         flight,
-        varied: Varied { case, variations: &variations },
+        varied: Varied { case, variations: &variations, start: Some(start_of_gradient(case)) },
         changes_models: &[false; INPUTS],
         places: &[Place::End],
         with_ground_distance: false,
@@ -90,7 +90,7 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<S
     };
     let path = FlightPath::from_planet_fixed(&end.state.planet_fixed());
     let is_ballistic = case.vehicle.is_ballistic();
-    let gradient = |output: variation::Dual<INPUTS>| {
+    let gradient = |output: Dual<INPUTS>| {
         let slopes: [f64; INPUTS] = match output.eps.0 {
             Some(slopes) => slopes.into(),
             None => [0.0; INPUTS],
@@ -154,15 +154,19 @@ fn of_gradient(case: &Case) -> Vec<Variation> {
         Atmosphere::Exponential { surface_density, .. } if case.density_factor != 0.0 => *surface_density += offset,
         _ => case.density_factor += offset,
     }));
-    let start: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
-    for (index, size) in [start[0], 1.0, 1.0, start[3].max(1.0), 1.0, 1.0].into_iter().enumerate() {
-        variations.push(vary(size, &|case, offset| {
-            let mut path = start;
-            path[index] += offset;
-            case.initial_state = FlightPath::from(path).to_planet_fixed();
-        }));
-    }
+    // Those of the initial state stand beside it.
+    variations.extend(std::iter::repeat_with(Variation::of_nothing).take(6));
     variations
+}
+
+/// The initial state, with its derivatives by the last six numbers of a gradient.
+fn start_of_gradient(case: &Case) -> PlanetFixed<Dual<INPUTS>> {
+    let path: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
+    let number = |index: usize| {
+        let slope = |input: usize| if input == INPUTS - 6 + index { 1.0 } else { 0.0 };
+        Varied::<INPUTS>::dual(path[index], std::array::from_fn(slope))
+    };
+    FlightPath::from(std::array::from_fn(number)).to_planet_fixed()
 }
 
 /// The step of a variation, in parts of the size of the number: the differences of fourth order then are as exact as rounding allows.

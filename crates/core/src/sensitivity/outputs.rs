@@ -113,14 +113,14 @@ fn chunk<const W: usize>(
     let wanted: Vec<Place> = places.iter().map(|place| place.unwrap_or(Place::End)).collect();
     let follow = Follow::<W> {
         flight,
-        varied: Varied { case, variations },
+        varied: Varied { case, variations, start: None },
         changes_models: &changes_models,
         places: &wanted,
         with_ground_distance: true,
         interrupt,
     };
     let samples = dispatch(case.solver.equations, case.held(), follow)?;
-    let varied = Varied::<W> { case, variations };
+    let varied = Varied::<W> { case, variations, start: None };
     for (((sample, place), output), row) in samples.iter().zip(places).zip(outputs).zip(slopes) {
         let Some(sample) = sample.as_ref().filter(|_| place.is_some()) else {
             row.slopes.extend(variations.iter().map(|_| f64::NAN));

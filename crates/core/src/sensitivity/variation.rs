@@ -45,7 +45,8 @@ impl Variation {
     /// where there is no such case: beyond a bound, or where an order would change. The steps then are smaller, or on one side.
     /// None where the number cannot be moved at all.
     pub fn new(step: f64, moved: impl Fn(f64) -> Option<Case>) -> Option<Self> {
-        let steps = [1.0, 0.1, 1e-2].map(|part| step * part);
+        // Powers of two, so that most numbers are moved without rounding, and what is a multiple of one has its slope to the last digit.
+        let steps = [1.0, 0.1, 1e-2].map(|part| (step * part).log2().round().exp2());
         let ways = steps.iter().flat_map(|step| [(&CENTRAL, *step), (&ONE_SIDED, *step), (&ONE_SIDED, -*step)]);
         let node = |(times, weight): (f64, f64), step: f64| {
             let offset = times * step;
@@ -58,11 +59,16 @@ impl Variation {
         Some(Self { nodes, offsets: [0.0; 3] })
     }
 
+    /// A number that moves nothing but what is said beside it.
+    pub(super) fn of_nothing() -> Self {
+        Self { nodes: Vec::new(), offsets: [0.0; 3] }
+    }
+
     /// What a flight adds to the lift and drag coefficients of its table and to its bank angle varies, of which none has a number in the case.
     pub(super) fn of_offset(index: usize) -> Self {
-        let mut offsets = [0.0; 3];
-        offsets[index] = 1.0;
-        Self { nodes: Vec::new(), offsets }
+        let mut variation = Self::of_nothing();
+        variation.offsets[index] = 1.0;
+        variation
     }
 
     pub(super) fn nodes(&self) -> &[Node] {
@@ -126,11 +132,13 @@ impl ModelsOfFlight {
 pub(super) struct Varied<'a, const W: usize> {
     pub(super) case: &'a Case,
     pub(super) variations: &'a [Variation],
+    /// The initial state, where its derivatives are known without the variations.
+    pub(super) start: Option<PlanetFixed<Dual<W>>>,
 }
 
 impl<const W: usize> Varied<'_, W> {
     /// A number with these derivatives.
-    fn dual(value: f64, slopes: [f64; W]) -> Dual<W> {
+    pub(super) fn dual(value: f64, slopes: [f64; W]) -> Dual<W> {
         if slopes.iter().all(|slope| *slope == 0.0) {
             return Dual::from(value);
         }
@@ -139,6 +147,9 @@ impl<const W: usize> Varied<'_, W> {
 
     /// The initial state.
     pub(super) fn start(&self) -> PlanetFixed<Dual<W>> {
+        if let Some(start) = self.start {
+            return start;
+        }
         let component = |index: usize| self.number(move |case| <[f64; 6]>::from(case.initial_state)[index]);
         PlanetFixed::from(std::array::from_fn(component))
     }
