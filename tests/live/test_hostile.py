@@ -124,7 +124,7 @@ def test_a_client_that_sends_a_byte_at_a_time_gets_no_longer_than_others(start, 
 
 def test_answers_that_nobody_takes_are_thrown_away(start):
     # Room for all of them, though they are one client.
-    service = start("--idle", "1", "--workers", "2", "--memory", str(2 << 30))
+    service = start("--idle", "1", "--workers", "2", "--memory", str(2 << 30), "--deadline", "60")
     clients = [open_connection(service) for _ in range(8)]
     for client in clients:
         client.sendall(request(HUGE))
