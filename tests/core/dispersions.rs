@@ -54,8 +54,10 @@ fn the_ellipse_is_that_of_random_flights() {
         }
     };
     let (east, north) = (offset(0), offset(1));
-    let outputs =
-        [Output { at: Moment::End, value: &east, turn: None }, Output { at: Moment::End, value: &north, turn: None }];
+    let outputs = [
+        Output { at: Moment::End, value: &east, turn: None, takes_ground_distance: true },
+        Output { at: Moment::End, value: &north, turn: None, takes_ground_distance: true },
+    ];
     let variation = |index: usize| {
         let moved = |offset: f64| Some(moved(&std::array::from_fn(|i| if i == index { offset } else { 0.0 })));
         Variation::new(0.1 * SPREADS[index], moved).unwrap()

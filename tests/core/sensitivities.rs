@@ -95,7 +95,8 @@ fn slopes_of(flight: &Trajectory, variations: &[Variation]) -> Vec<Slopes> {
         .into_iter()
         .map(|(_, at, value)| (at, move |point: &FlightPoint, _: Option<Moved>| value(point)))
         .collect();
-    let outputs: Vec<_> = values.iter().map(|(at, value)| Output { at: *at, value, turn: None }).collect();
+    let outputs: Vec<_> =
+        values.iter().map(|(at, value)| Output { at: *at, value, turn: None, takes_ground_distance: true }).collect();
     slopes(flight, variations, &outputs, &AtomicBool::new(false)).unwrap()
 }
 

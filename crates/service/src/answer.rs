@@ -173,7 +173,12 @@ fn slopes_of(
 ) -> Result<Vec<Slopes>, SimulationError> {
     let outputs: Vec<_> = outputs
         .iter()
-        .map(|OutputNumber { at, turn, value, .. }| Output { at: *at, value: value.as_ref(), turn: *turn })
+        .map(|OutputNumber { name, at, turn, value }| Output {
+            at: *at,
+            value: value.as_ref(),
+            turn: *turn,
+            takes_ground_distance: *name == "ground_distance",
+        })
         .collect();
     slopes(flight, variations, &outputs, interrupt)
 }

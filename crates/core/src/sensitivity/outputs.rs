@@ -51,6 +51,8 @@ pub struct Output<'a> {
     pub value: &'a dyn Fn(&FlightPoint, Option<Moved>) -> Option<f64>,
     /// The turn of a number that is an angle, in its unit, by which its differences are taken on the circle.
     pub turn: Option<f64>,
+    /// Whether the number takes the ground distance from the state: its derivatives are followed only where they are needed.
+    pub takes_ground_distance: bool,
 }
 
 /// An output, and how it depends on the numbers that vary.
@@ -110,33 +112,37 @@ fn chunk<const W: usize>(
     let variations = &variations[..variations.len().min(W)];
     let case = &flight.case;
     let changes_models: Vec<bool> = variations.iter().map(|variation| variation.changes_models(case)).collect();
-    let wanted: Vec<Place> = places.iter().map(|place| place.unwrap_or(Place::End)).collect();
-    let follow = Follow::<W> {
+    let mut wanted: Vec<Place> = Vec::new();
+    for place in places.iter().flatten() {
+        if !wanted.contains(place) {
+            wanted.push(*place);
+        }
+    }
+    let varied = Varied::<W> { case, variations, start: None };
+    let follow = Follow {
         flight,
-        varied: Varied { case, variations, start: None },
+        varied,
         changes_models: &changes_models,
         places: &wanted,
-        with_ground_distance: true,
+        with_ground_distance: outputs.iter().any(|output| output.takes_ground_distance),
         interrupt,
     };
     let samples = dispatch(case.solver.equations, case.held(), follow)?;
-    let varied = Varied::<W> { case, variations, start: None };
-    for (((sample, place), output), row) in samples.iter().zip(places).zip(outputs).zip(slopes) {
-        let Some(sample) = sample.as_ref().filter(|_| place.is_some()) else {
+    let near: Vec<_> = samples.iter().map(|sample| Some(Near::new(flight, &varied, first, sample.as_ref()?))).collect();
+    for ((place, output), row) in places.iter().zip(outputs).zip(slopes) {
+        let near = place.and_then(|place| near[wanted.iter().position(|wanted| *wanted == place)?].as_ref());
+        let Some(near) = near else {
             row.slopes.extend(variations.iter().map(|_| f64::NAN));
             continue;
         };
-        let near = Near::new(flight, &varied, first, sample);
-        row.time = Some(sample.time.re);
-        row.value = near.value(output);
-        row.slopes.extend(variations.iter().enumerate().map(|(index, variation)| {
-            if variation.changes_phases(case) { f64::NAN } else { near.slope(output, index) }
-        }));
+        row.time = Some(near.point.time);
+        row.value = (output.value)(&near.point, None);
+        row.slopes.extend((0..variations.len()).map(|variation| near.slope(output, variation)));
     }
     Ok(variations.len())
 }
 
-/// The states near a sample, by which an output has its slopes.
+/// The points near a sample, by which outputs have their slopes.
 struct Near<'a, const W: usize> {
     flight: &'a Trajectory,
     varied: &'a Varied<'a, W>,
@@ -145,6 +151,16 @@ struct Near<'a, const W: usize> {
     sample: &'a Sample<W>,
     /// The point of the sample itself.
     point: FlightPoint,
+    /// Of each variation; none where there is no derivative.
+    neighbours: Vec<Option<Neighbours>>,
+}
+
+/// The points to which the number of a variation leads.
+struct Neighbours {
+    /// Where it moves the state and the vehicle, if it does: the step, and the points of the differences.
+    by_state: Option<(f64, [FlightPoint; 4])>,
+    /// Where it moves the models, for each of its nodes.
+    by_models: Vec<FlightPoint>,
 }
 
 /// The part of its own size by which a state is moved to find the slope of an output: differences of fourth order then are exact to ten
@@ -160,33 +176,43 @@ impl<'a, const W: usize> Near<'a, W> {
         let mut forces = phase.forces(&flight.case);
         forces.enter(*mode);
         let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &state.map(|number| number.re));
-        Self { flight, varied, first, sample, point }
+        let mut near = Self { flight, varied, first, sample, point, neighbours: Vec::new() };
+        near.neighbours = (0..varied.variations.len()).map(|variation| near.neighbours(variation)).collect();
+        near
     }
 
-    /// The output itself.
-    fn value(&self, output: &Output) -> Option<f64> {
-        (output.value)(&self.point, None)
+    fn neighbours(&self, variation: usize) -> Option<Neighbours> {
+        let number = &self.varied.variations[variation];
+        if number.changes_phases(&self.flight.case) {
+            return None;
+        }
+        let by_state = self
+            .step(variation)
+            .map(|step| (step, CENTRAL.map(|(times, _)| self.with_state_moved(variation, times * step))));
+        let changes_forces = number.changes_forces_beside_vehicle(&self.flight.case);
+        let of_node = |node: &Node| if changes_forces { self.with_models_moved(node) } else { self.point };
+        Some(Neighbours { by_state, by_models: number.nodes().iter().map(of_node).collect() })
     }
 
     /// The derivative of the output by a variation: by the way it moves the state and the vehicle, and by the models that it moves.
     fn slope(&self, output: &Output, variation: usize) -> f64 {
-        let Some(value) = self.value(output) else { return f64::NAN };
+        let value = (output.value)(&self.point, None);
+        let (Some(value), Some(neighbours)) = (value, &self.neighbours[variation]) else { return f64::NAN };
         let difference = |moved: Option<f64>| {
             let difference = moved.map_or(f64::NAN, |moved| moved - value);
             output.turn.map_or(difference, |turn| difference - turn * (difference / turn).round())
         };
-        let by_state = self.step(variation).map_or(0.0, |step| {
-            let moved = |(times, weight): (f64, f64)| {
-                weight * difference((output.value)(&self.with_state_moved(variation, times * step), None))
-            };
-            CENTRAL.into_iter().map(moved).sum::<f64>() / step
+        let by_state = neighbours.by_state.as_ref().map_or(0.0, |(step, points)| {
+            let weighted =
+                |((_, weight), point): (&(f64, f64), &FlightPoint)| weight * difference((output.value)(point, None));
+            CENTRAL.iter().zip(points).map(weighted).sum::<f64>() / step
         });
-        let moved = |node: &Node| {
+        let of_node = |(node, point): (&Node, &FlightPoint)| {
             let moved = Moved { variation: self.first + variation, offset: node.offset };
-            let point = self.with_models_moved(node);
-            node.weight * difference((output.value)(&point, Some(moved)))
+            node.weight * difference((output.value)(point, Some(moved)))
         };
-        by_state + self.varied.variations[variation].nodes().iter().map(moved).sum::<f64>()
+        let nodes = self.varied.variations[variation].nodes();
+        by_state + nodes.iter().zip(&neighbours.by_models).map(of_node).sum::<f64>()
     }
 
     /// The point where the number of a variation has moved the state, the vehicle, and the place from which the flight sets out, by an

@@ -5,7 +5,7 @@ use num_dual::{Derivative, DualSVec64};
 
 use crate::coordinates::PlanetFixed;
 use crate::event::Event;
-use crate::motion::Models;
+use crate::motion::{Models, Parameters};
 use crate::propulsion::ThrustAxis;
 use crate::scenario::{Case, Numbers};
 use crate::vehicle::{Aerodynamics, Vehicle};
@@ -98,6 +98,17 @@ impl Variation {
         self.nodes.iter().any(|node| kinds(&node.case) != of_flight)
     }
 
+    /// Whether the forces on one and the same vehicle change with the number: by the models, by the density of the air, or by a constant
+    /// bank angle.
+    pub(super) fn changes_forces_beside_vehicle(&self, case: &Case) -> bool {
+        let of_case = |case: &Case| {
+            let Parameters { density, bank_angle, .. } = case.parameters();
+            [density, bank_angle].map(f64::to_bits)
+        };
+        let of_flight = of_case(case);
+        self.changes_models(case) || self.nodes.iter().any(|node| of_case(&node.case) != of_flight)
+    }
+
     /// Whether more varies than numbers that a phase of the flight takes from its case: what is in the models has its derivatives by
     /// differences.
     pub fn changes_models(&self, case: &Case) -> bool {
@@ -129,6 +140,7 @@ impl ModelsOfFlight {
 }
 
 /// A case of which up to `W` numbers vary.
+#[derive(Clone, Copy)]
 pub(super) struct Varied<'a, const W: usize> {
     pub(super) case: &'a Case,
     pub(super) variations: &'a [Variation],
