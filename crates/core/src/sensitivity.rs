@@ -64,6 +64,10 @@ pub struct Sensitivities {
 /// The numbers of a [`Gradient`] that vary: six of the initial state, and six others, of the two of the density the product.
 const INPUTS: usize = 12;
 
+/// Derivatives that are followed at once: where more are asked for, the flight is followed several times. Each width is a program of its own, and
+/// long to compile.
+const WIDTH: usize = 4;
+
 /// A flight that ends this near (in parts of a right angle's sine, or of the circular speed) to where an angle or the speed has no
 /// slope has none: what is computed there is rounding.
 const UNDEFINED: f64 = 1e-6;
@@ -75,27 +79,34 @@ const UNDEFINED: f64 = 1e-6;
 pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Sensitivities, SimulationError> {
     let case = &flight.case;
     let variations = of_gradient(case);
-    let follow = Follow::<INPUTS> {
-        flight,
-        varied: Varied { case, variations: &variations, start: Some(start_of_gradient(case)) },
-        changes_models: &[false; INPUTS],
-        places: &[Place::End],
-        with_ground_distance: false,
-        interrupt,
-    };
-    let Some([Some(end)]) =
-        dispatch(case.solver.equations, case.held_with(waits_for_heat_load(case)), follow)?.first_chunk().cloned()
-    else {
-        return Ok(Sensitivities::NONE);
-    };
-    let path = FlightPath::from_planet_fixed(&end.state.planet_fixed());
-    let is_ballistic = case.vehicle.is_ballistic();
-    let gradient = |output: Dual<INPUTS>| {
-        let slopes: [f64; INPUTS] = match output.eps.0 {
-            Some(slopes) => slopes.into(),
-            None => [0.0; INPUTS],
+    let held = case.held_with(waits_for_heat_load(case));
+    // Of the time, the longitude, the latitude, the speed and the flight-path angle.
+    let mut slopes = [[f64::NAN; INPUTS]; 5];
+    for (pass, variations) in variations.chunks(WIDTH).enumerate() {
+        let first = pass * WIDTH;
+        let follow = Follow {
+            flight,
+            varied: Varied { case, variations, start: Some(start_of_gradient(case, first)) },
+            changes_models: &[false; WIDTH],
+            places: &[Place::End],
+            with_ground_distance: false,
+            interrupt,
         };
-        let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, state @ ..] = slopes;
+        let samples = dispatch(case.solver.equations, held, follow)?;
+        let Some(Some(end)) = samples.first() else { continue };
+        let FlightPath { longitude, geocentric_latitude, speed, flight_path_angle, .. } =
+            FlightPath::from_planet_fixed(&end.state.planet_fixed());
+        let outputs = [end.time, longitude, geocentric_latitude, speed, flight_path_angle];
+        for (row, output) in slopes.iter_mut().zip(outputs) {
+            for (index, slope) in row[first..].iter_mut().take(WIDTH).enumerate() {
+                *slope = variation::slope(&output, index);
+            }
+        }
+    }
+    let is_ballistic = case.vehicle.is_ballistic();
+    let gradient = |output: usize| {
+        let [mass, reference_area, lift_coefficient, drag_coefficient, bank_angle, density, state @ ..] =
+            slopes[output];
         let unless_ballistic = |slope: f64| if is_ballistic { f64::NAN } else { slope };
         let [surface_density, density_factor] = of_density(case, density);
         Gradient {
@@ -115,11 +126,11 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<S
     let moving = last.speed / (planet.gravitational_parameter / planet.equatorial_radius()).sqrt();
     let off_axis = last.geocentric_latitude.cos();
     Ok(Sensitivities {
-        time: gradient(end.time),
-        longitude: defined(path.longitude, off_axis),
-        geocentric_latitude: defined(path.geocentric_latitude, off_axis),
-        speed: defined(path.speed, moving),
-        flight_path_angle: defined(path.flight_path_angle, moving.min(last.flight_path_angle.cos())),
+        time: gradient(0),
+        longitude: defined(1, off_axis),
+        geocentric_latitude: defined(2, off_axis),
+        speed: defined(3, moving),
+        flight_path_angle: defined(4, moving.min(last.flight_path_angle.cos())),
     })
 }
 
@@ -159,12 +170,12 @@ fn of_gradient(case: &Case) -> Vec<Variation> {
     variations
 }
 
-/// The initial state, with its derivatives by the last six numbers of a gradient.
-fn start_of_gradient(case: &Case) -> PlanetFixed<Dual<INPUTS>> {
+/// The initial state, with its derivatives by those of the numbers of a gradient that follow the `first`; the last six are of it.
+fn start_of_gradient(case: &Case, first: usize) -> PlanetFixed<Dual<WIDTH>> {
     let path: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
     let number = |index: usize| {
-        let slope = |input: usize| if input == INPUTS - 6 + index { 1.0 } else { 0.0 };
-        Varied::<INPUTS>::dual(path[index], std::array::from_fn(slope))
+        let slope = |input: usize| if first + input == INPUTS - 6 + index { 1.0 } else { 0.0 };
+        Varied::<WIDTH>::dual(path[index], std::array::from_fn(slope))
     };
     FlightPath::from(std::array::from_fn(number)).to_planet_fixed()
 }
@@ -205,16 +216,5 @@ impl Gradient {
             flight_path_angle: f64::NAN,
             heading: f64::NAN,
         },
-    };
-}
-
-impl Sensitivities {
-    /// No derivatives.
-    const NONE: Self = Self {
-        time: Gradient::NONE,
-        longitude: Gradient::NONE,
-        geocentric_latitude: Gradient::NONE,
-        speed: Gradient::NONE,
-        flight_path_angle: Gradient::NONE,
     };
 }

@@ -2,8 +2,9 @@
 
 use std::cell::Cell;
 
+use super::WIDTH;
 use super::follow::{Follow, Place, Sample};
-use super::variation::{CENTRAL, Dual, Node, Variation, Varied};
+use super::variation::{CENTRAL, Dual, Node, Variation, Varied, slope};
 use crate::interrupt::Interrupt;
 use crate::motion::State;
 use crate::root::bracketed;
@@ -84,23 +85,17 @@ pub fn slopes(
         .iter()
         .map(|_| Slopes { time: None, value: None, slopes: Vec::with_capacity(variations.len()) })
         .collect();
-    let mut first = 0;
-    loop {
-        let rest = &variations[first..];
-        // As wide as what is left, in steps for which the program has code.
-        first += match rest.len() {
-            0..=2 => chunk::<2>(flight, first, rest, outputs, &places, &mut slopes, interrupt)?,
-            3..=4 => chunk::<4>(flight, first, rest, outputs, &places, &mut slopes, interrupt)?,
-            _ => chunk::<12>(flight, first, rest, outputs, &places, &mut slopes, interrupt)?,
-        };
-        if first == variations.len() {
-            return Ok(slopes);
-        }
+    // Without variations there still are the outputs themselves.
+    let passes = variations.len().div_ceil(WIDTH).max(1);
+    for first in (0..passes).map(|pass| pass * WIDTH) {
+        let last = variations.len().min(first + WIDTH);
+        add_slopes(flight, first, &variations[first..last], outputs, &places, &mut slopes, interrupt)?;
     }
+    Ok(slopes)
 }
 
-/// Adds the slopes by the first `W` of some variations, of which the first has this place among all; returns how many they are.
-fn chunk<const W: usize>(
+/// Adds the slopes by some variations, of which the first has this place among all.
+fn add_slopes(
     flight: &Trajectory,
     first: usize,
     variations: &[Variation],
@@ -108,8 +103,7 @@ fn chunk<const W: usize>(
     places: &[Option<Place>],
     slopes: &mut [Slopes],
     interrupt: &dyn Interrupt,
-) -> Result<usize, SimulationError> {
-    let variations = &variations[..variations.len().min(W)];
+) -> Result<(), SimulationError> {
     let case = &flight.case;
     let changes_models: Vec<bool> = variations.iter().map(|variation| variation.changes_models(case)).collect();
     let mut wanted: Vec<Place> = Vec::new();
@@ -118,7 +112,7 @@ fn chunk<const W: usize>(
             wanted.push(*place);
         }
     }
-    let varied = Varied::<W> { case, variations, start: None };
+    let varied = Varied::<WIDTH> { case, variations, start: None };
     let follow = Follow {
         flight,
         varied,
@@ -139,7 +133,7 @@ fn chunk<const W: usize>(
         row.value = (output.value)(&near.point, None);
         row.slopes.extend((0..variations.len()).map(|variation| near.slope(output, variation)));
     }
-    Ok(variations.len())
+    Ok(())
 }
 
 /// The points near a sample, by which outputs have their slopes.
@@ -267,11 +261,6 @@ impl<'a, const W: usize> Near<'a, W> {
         let size = sizes.into_iter().fold(0.0, f64::max);
         (size > 0.0).then(|| MOVED / size)
     }
-}
-
-/// A derivative of a number.
-fn slope<const W: usize>(number: &Dual<W>, variation: usize) -> f64 {
-    number.eps.0.map_or(0.0, |slopes| slopes[variation])
 }
 
 /// Where an output is taken from the flight; none where the flight has no such moment.

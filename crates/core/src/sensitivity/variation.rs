@@ -185,3 +185,8 @@ impl<const W: usize> Numbers<Dual<W>> for Varied<'_, W> {
         [0, 1, 2].map(|index| Self::dual(0.0, self.each(|variation| variation.offsets[index])))
     }
 }
+
+/// A derivative of a number.
+pub(super) fn slope<const W: usize>(number: &Dual<W>, variation: usize) -> f64 {
+    number.eps.0.map_or(0.0, |slopes| slopes[variation])
+}
