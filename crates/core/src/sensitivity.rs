@@ -1,6 +1,6 @@
 //! How what a flight gives depends on the numbers of its case: derivatives of its end, its events and its peaks, their times included.
 //!
-//! The steps of the flight are followed once more in dual numbers ([`follow`]), as wide as there are numbers that vary. A number is
+//! The steps of the flight are followed once more in dual numbers, with six derivatives at a time. A number is
 //! a [`Variation`]: the case with the number moved a little, so that any number of any case can vary, whatever it stands for.
 
 mod follow;
@@ -66,7 +66,7 @@ const INPUTS: usize = 12;
 
 /// Derivatives that are followed at once: where more are asked for, the flight is followed several times. Each width is a program of its own, and
 /// long to compile.
-const WIDTH: usize = 4;
+const WIDTH: usize = 6;
 
 /// A flight that ends this near (in parts of a right angle's sine, or of the circular speed) to where an angle or the speed has no
 /// slope has none: what is computed there is rounding.

@@ -351,7 +351,7 @@ mod tests {
         let (worker, first) = Worker::busy();
         let turns = &worker.turns;
         // However long this thread is away, the short ones get no lead by it.
-        turns.lock().counted += Duration::from_secs(3600);
+        turns.lock().counted += Duration::from_hours(1);
         assert!(!turns.are_wanted());
         let [mut last, mut before] = [Position::Last, Position::First].map(|place| turns.ask(place));
         let [second, third] = ["second", "third"].map(|name| worker.submit(name));
