@@ -45,12 +45,14 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::Name | Kind::NameOrObject => "must be one of ",
                 Kind::Text => "must be a string",
                 Kind::Boolean => "must be true or false",
+                Kind::BooleanOrObject => "must be true, false or an object with outputs and numbers",
                 Kind::False => "must be false",
                 Kind::Object => "must be an object",
                 Kind::Vector | Kind::Numbers => "must be an array of numbers",
                 Kind::Matrix => "must be an array of arrays of numbers",
                 Kind::Names => "must be an array of names",
                 Kind::Texts => "must be an array of strings",
+                Kind::TextOrTexts => "must be a string or an array of strings",
                 Kind::Objects => "must be an array of objects",
                 Kind::Instant => "must be an RFC 3339 time",
                 Kind::SiderealTime => "must be a number of seconds or \"HH:MM:SS.s\"",
@@ -148,6 +150,10 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
                 "/heating/convective/type" => "must be one of sutton_graves, got ",
                 "/heating/radiative" => "must be one of none, tauber_sutton, got ",
+                "/sensitivities/of/0/quantity" => "must be one of time, altitude, radius, longitude, ",
+                "/sensitivities/of/0/at" => "must be one of end, start, peak, lowest, got ",
+                "/sensitivities/of/0/at/side" => "must be one of before, after, got ",
+                "/dispersions/0/offset/type" => "must be one of normal, multivariate_normal, got ",
                 "/events/0/when/quantity" | "/stop/when/0/quantity" => {
                     "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, mass, "
                 }

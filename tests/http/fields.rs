@@ -49,6 +49,8 @@ pub(crate) enum Kind {
     Name,
     Text,
     Boolean,
+    /// True, false, or an object.
+    BooleanOrObject,
     /// `false` and nothing else.
     False,
     Object,
@@ -61,6 +63,8 @@ pub(crate) enum Kind {
     Names,
     /// Texts.
     Texts,
+    /// A text, or texts.
+    TextOrTexts,
     Objects,
     /// An RFC 3339 time.
     Instant,
@@ -86,8 +90,8 @@ pub(crate) enum Limit {
 }
 
 use Kind::{
-    Angle, Boolean, Command, False, Instant, Matrix, Name, NameOrObject, Names, Number, NumberOrNumbers, Numbers,
-    Object, Objects, SiderealTime, Text, Texts, Thrust, Vector, Whole,
+    Angle, Boolean, BooleanOrObject, Command, False, Instant, Matrix, Name, NameOrObject, Names, Number,
+    NumberOrNumbers, Numbers, Object, Objects, SiderealTime, Text, TextOrTexts, Texts, Thrust, Vector, Whole,
 };
 use Limit::{Closed, Open, Unlimited};
 use Need::{Alternative, Optional, Required};
@@ -305,6 +309,40 @@ const PARACHUTE: [Row; 5] = [
     ("/delay", Optional, Number(TIME)),
 ];
 
+const ASKED: [Row; 5] = [
+    ("/sensitivities", Optional, BooleanOrObject),
+    ("/sensitivities/of", Required, Objects),
+    ("/sensitivities/of/0/quantity", Alternative, Name),
+    ("/sensitivities/of/0/at", Optional, NameOrObject),
+    ("/sensitivities/to", Required, Texts),
+];
+
+const AT_TIME: [Row; 1] = [("/sensitivities/of/0/at/time", Alternative, Number(TIME))];
+
+const AT_EVENT: [Row; 2] =
+    [("/sensitivities/of/0/at/event", Alternative, Text), ("/sensitivities/of/0/at/side", Optional, Name)];
+
+const OF_SITE: [Row; 3] = [
+    ("/sensitivities/of/0/site", Alternative, Object),
+    ("/sensitivities/of/0/site/longitude", Required, Angle(TURN)),
+    ("/sensitivities/of/0/site/geodetic_latitude", Required, Angle(QUARTER)),
+];
+
+const OFFSET: [Row; 6] = [
+    ("/dispersions", Optional, Objects),
+    ("/dispersions/0/pointer", Required, TextOrTexts),
+    ("/dispersions/0/offset", Alternative, Object),
+    ("/dispersions/0/offset/type", Required, Name),
+    ("/dispersions/0/offset/mean", Optional, Number(between(-1e25, 1e25))),
+    ("/dispersions/0/offset/standard_deviation", Required, Number(between(0.0, 1e25))),
+];
+
+const FACTOR: [Row; 3] = [
+    ("/dispersions/0/factor", Alternative, Object),
+    ("/dispersions/0/factor/mean", Optional, Numbers),
+    ("/dispersions/0/factor/covariance", Required, Matrix),
+];
+
 /// What a condition may wait for, and the values that it may pass.
 pub(crate) const QUANTITIES: [(&str, Kind); 21] = [
     ("time", Number(TIME)),
@@ -404,6 +442,31 @@ pub(crate) fn fields() -> Vec<Field> {
         add("/simulate", &request, place, rows);
     }
 
+    let normal = json!({"type": "normal", "mean": 1, "standard_deviation": 0.1});
+    let covariance = json!([[0.1, 0], [0, 0.2]]);
+    let several = json!({"type": "multivariate_normal", "mean": [1, 1], "covariance": covariance});
+    let pointers = ["/vehicle/mass", "/density_factor"];
+    for (asked, rows) in [
+        (json!({"/sensitivities": {"of": [{"quantity": "speed", "at": "peak"}], "to": ["/vehicle/mass"]}}), &ASKED[..]),
+        (json!({"/sensitivities": {"of": [{"quantity": "speed", "at": {"time": 0.5}}], "to": []}}), &AT_TIME),
+        (
+            json!({"/sensitivities": {"of": [{"quantity": "speed", "at": {"event": "first", "side": "after"}}], "to": []},
+                "/events": [super::requests::named("first")]}),
+            &AT_EVENT,
+        ),
+        (
+            json!({"/sensitivities": {"of": [{"site": {"longitude": 0.7, "geodetic_latitude": -0.4}}], "to": []}}),
+            &OF_SITE,
+        ),
+        (json!({"/dispersions": [{"pointer": "/vehicle/mass", "offset": normal}]}), &OFFSET),
+        (json!({"/dispersions": [{"pointer": pointers, "factor": several}]}), &FACTOR),
+    ] {
+        let given = asked.as_object().unwrap();
+        let request =
+            given.iter().fold(flight("geodetic"), |request, (place, value)| with(&request, place, value.clone()));
+        add("/simulate", &request, "", rows);
+    }
+
     for (quantity, kind) in QUANTITIES {
         // Time never falls.
         let ways: &[&str] = if quantity == "time" { &["rises_through"] } else { &["falls_through", "rises_through"] };
@@ -467,19 +530,19 @@ impl Kind {
         if !number {
             wrong.push(json!(13));
         }
-        if !matches!(self, Text) {
+        if !matches!(self, Text | TextOrTexts) {
             wrong.extend([json!("13"), json!("")]);
         }
-        if !matches!(self, Boolean) {
+        if !matches!(self, Boolean | BooleanOrObject) {
             wrong.push(json!(true));
         }
-        if !matches!(self, Boolean | False) {
+        if !matches!(self, Boolean | BooleanOrObject | False) {
             wrong.push(json!(false));
         }
-        if !matches!(self, Vector | Numbers | NumberOrNumbers(_) | Matrix | Names | Texts | Objects) {
+        if !matches!(self, Vector | Numbers | NumberOrNumbers(_) | Matrix | Names | Texts | TextOrTexts | Objects) {
             wrong.push(json!([1, 2, 3]));
         }
-        if !matches!(self, Object | Command(_) | Thrust | NameOrObject) {
+        if !matches!(self, Object | Command(_) | Thrust | NameOrObject | BooleanOrObject) {
             wrong.push(json!({"value": 1}));
         }
         wrong

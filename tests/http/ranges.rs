@@ -96,6 +96,12 @@ fn unsound(answer: &Answer) -> Option<String> {
                     }
                 }
             }
+            // A derivative and a share may be none.
+            for place in ["/sensitivities", "/covariance"] {
+                if let Some(value) = answer.pointer_mut(place) {
+                    *value = json!(0);
+                }
+            }
             // The first phase begins with the flight, and not with an event.
             if let Some(value) = answer.pointer_mut("/phases/0/from") {
                 *value = json!(0);

@@ -329,7 +329,7 @@ async fn faulty_dispersions_are_refused() {
         (
             json!({"pointer": "/vehicle/mass", "offset": {"type": "normal", "standard_deviation": -1}}),
             "/offset/standard_deviation",
-            "must be at least 0, got -1",
+            "must be between 0 and 1e25, got -1",
         ),
         (
             json!({"pointer": "/vehicle/mass", "offset": {"type": "multivariate_normal", "covariance": [[1, 0], [0, 1]]}}),

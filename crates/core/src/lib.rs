@@ -59,6 +59,9 @@
 //! | event | what happens once, at its trigger; its effect changes the vehicle, the engine, a parachute or the velocity |
 //! | event record | an event that happened, with the state before and after it |
 //! | arrival | the end of a flight: its time, state and termination |
+//! | variation | a number of a case that varies, as the case with the number moved a little, several times |
+//! | output | a number that a flight gives at a moment; its slopes are its derivatives by variations |
+//! | dispersion | how far a number of a case, or an output, scatters about its own value |
 //! | peak | the greatest value of a load or a heat flux, located between the steps |
 //!
 //! # Reference

@@ -353,6 +353,24 @@ impl Case {
                 .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along.is_level()))
     }
 
+    /// The same case, which shares with another what is equal in both and may be large: tables, layers and schedules.
+    #[must_use]
+    pub fn sharing(mut self, other: &Self) -> Self {
+        fn share<T: Clone + PartialEq>(own: &mut T, other: &T) {
+            if *own == *other {
+                own.clone_from(other);
+            }
+        }
+        share(&mut self.atmosphere, &other.atmosphere);
+        share(&mut self.wind, &other.wind);
+        share(&mut self.vehicle, &other.vehicle);
+        share(&mut self.control, &other.control);
+        for (own, other) in self.events.iter_mut().zip(&other.events) {
+            share(own, other);
+        }
+        self
+    }
+
     /// What its states hold.
     pub(crate) fn held(&self) -> Held {
         self.held_with(self.heating.is_some())

@@ -53,7 +53,7 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
     let mut held = Held::new(&flight, interrupt);
     let points = rows(&request, &flight, row_limit, &mut held)?;
     let work = work(&flight, points.as_deref());
-    let analyses = analyses(&request, &flight, interrupt)?;
+    let analyses = analyses(&request, &flight, &mut held)?;
     let response = SimulateResponse::new(request, &flight, points, analyses, elapsed);
     let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
     let mut out = Written::new(held);
@@ -83,15 +83,12 @@ fn requested_output(format: Format) -> RequestedOutput {
 }
 
 /// What a request asks for beyond the flight.
-fn analyses(
-    requested: &FlightRequest,
-    flight: &Trajectory,
-    interrupt: &dyn Interrupt,
-) -> Result<RequestedAnalyses, ApiError> {
+fn analyses(requested: &FlightRequest, flight: &Trajectory, held: &mut Held) -> Result<RequestedAnalyses, ApiError> {
+    let interrupt = held.interrupt;
     let request = &requested.request;
     let mut analyses = RequestedAnalyses {
-        sensitivities: sensitivities(requested, flight, interrupt)?,
-        covariance: covariance(requested, flight, interrupt)?,
+        sensitivities: sensitivities(requested, flight, held)?,
+        covariance: covariance(requested, flight, held)?,
         ..RequestedAnalyses::default()
     };
     if request.verify {
@@ -111,8 +108,9 @@ fn analyses(
 fn sensitivities(
     requested: &FlightRequest,
     flight: &Trajectory,
-    interrupt: &dyn Interrupt,
+    held: &mut Held,
 ) -> Result<Option<GivenSensitivities>, ApiError> {
+    let interrupt = held.interrupt;
     let request = &requested.request;
     let of = match &request.sensitivities {
         Asked::Nothing => return Ok(None),
@@ -124,6 +122,7 @@ fn sensitivities(
         Asked::Matrix { of, .. } => of,
     };
     let Some(numbers) = &requested.numbers else { return Ok(None) };
+    held.reserve(held.bytes + numbers.bytes())?;
     let numbers = request.sensitivities.variations(numbers, interrupt).map_err(ApiError::Invalid)?;
     if interrupt.is_raised() {
         return Err(ApiError::Interrupted);
@@ -143,13 +142,11 @@ fn sensitivities(
 }
 
 /// The covariance for which a request asks.
-fn covariance(
-    requested: &FlightRequest,
-    flight: &Trajectory,
-    interrupt: &dyn Interrupt,
-) -> Result<Option<Covariance>, ApiError> {
+fn covariance(requested: &FlightRequest, flight: &Trajectory, held: &mut Held) -> Result<Option<Covariance>, ApiError> {
+    let interrupt = held.interrupt;
     let request = &requested.request;
     let Some(numbers) = requested.numbers.as_ref().filter(|_| !request.dispersions.is_empty()) else { return Ok(None) };
+    held.reserve(held.bytes + numbers.bytes())?;
     let varied = Dispersion::variations(&request.dispersions, numbers, interrupt);
     let varied = varied.map_err(|fault| ApiError::Invalid(vec![fault]))?.into_iter();
     let (variations, moved): (Vec<_>, Vec<_>) = varied.map(|Varied { variation, known }| (variation, known)).unzip();
@@ -251,7 +248,7 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
     let mut held = Held::new(&flight, interrupt);
     let points = rows(&analytic.flight, &flight, row_limit, &mut held)?.unwrap_or_default();
     let work = work(&flight, Some(&points));
-    let analyses = analyses(&analytic.flight, &flight, interrupt)?;
+    let analyses = analyses(&analytic.flight, &flight, &mut held)?;
     let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, comparison, analyses);
     let mut out = Written::new(held);

@@ -81,6 +81,12 @@ impl Bound {
     pub const EMISSIVITY: Self = Self::above(0.0, 1.0);
     /// The relative tolerance of the integration.
     pub const RELATIVE_TOLERANCE: Self = Self::between(1e-14, 1e-3);
+    /// Of how far a number scatters, in its unit: up to that of the greatest numbers, of which the squares are numbers still.
+    pub const STANDARD_DEVIATION: Self = Self::between(0.0, 1e25);
+    /// Of what is added to a number, or multiplies it, in the mean.
+    pub const MEAN: Self = Self::between(-1e25, 1e25);
+    /// Of two numbers that scatter.
+    pub const COVARIANCE: Self = Self::between(-1e50, 1e50);
 
     const fn between(minimum: f64, maximum: f64) -> Self {
         Self { minimum, exclusive: false, maximum }

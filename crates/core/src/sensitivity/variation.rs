@@ -45,6 +45,9 @@ impl Variation {
     /// where there is no such case: beyond a bound, or where an order would change. The steps then are smaller, or on one side.
     /// None where the number cannot be moved at all.
     pub fn new(step: f64, moved: impl Fn(f64) -> Option<Case>) -> Option<Self> {
+        if !(step.is_finite() && step > 0.0) {
+            return None;
+        }
         // Powers of two, so that most numbers are moved without rounding, and what is a multiple of one has its slope to the last digit.
         let steps = [1.0, 0.1, 1e-2].map(|part| (step * part).log2().round().exp2());
         let ways = steps.iter().flat_map(|step| [(&CENTRAL, *step), (&ONE_SIDED, *step), (&ONE_SIDED, -*step)]);

@@ -80,11 +80,11 @@ fn normal(object: &mut Object) -> Option<Normal> {
         .field("mean", "Mean")
         .doc("Its mean; without it 0 of an offset, and 1 of a factor.")
         .optional()
-        .number(Bound::FINITE);
+        .number(Bound::MEAN);
     let deviation = object
         .field("standard_deviation", "Standard deviation")
         .doc("Its standard deviation.")
-        .number(Bound::NON_NEGATIVE)?;
+        .number(Bound::STANDARD_DEVIATION)?;
     Some(Normal { mean: mean.map(|mean| vec![mean]), covariance: vec![vec![deviation * deviation]] })
 }
 
@@ -94,11 +94,11 @@ fn multivariate_normal(object: &mut Object) -> Option<Normal> {
         .field("mean", "Means")
         .doc("Its means; without them 0 of offsets, and 1 of factors.")
         .optional()
-        .numbers(Bound::FINITE, [1, MOST_VARIED]);
+        .numbers(Bound::MEAN, [1, MOST_VARIED]);
     let covariance = object
         .field("covariance", "Covariance")
         .doc("Its covariance, row by row: symmetric, with no negative eigenvalue.")
-        .matrix(Bound::FINITE, "covariance");
+        .matrix(Bound::COVARIANCE, "covariance");
     let covariance = covariance?;
     let count = covariance.len();
     for (row, column) in (0..count).flat_map(|row| (0..row).map(move |column| (row, column))) {
@@ -131,6 +131,11 @@ fn multivariate_normal(object: &mut Object) -> Option<Normal> {
 const ROUNDING: f64 = 1e-12;
 
 impl Dispersion {
+    /// The pointers of its numbers.
+    pub(super) fn pointers(&self) -> impl Iterator<Item = &str> {
+        self.pointers.iter().map(String::as_str)
+    }
+
     /// What is wrong with the pointers of dispersions.
     pub(super) fn faults(dispersions: &[Self], numbers: &Numbers) -> Vec<Fault> {
         let mut faults = Vec::new();

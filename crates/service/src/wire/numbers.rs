@@ -23,8 +23,12 @@ const NO_PART_OF_THE_CASE: [&str; 6] =
 pub struct Numbers {
     /// The request, with every default filled in.
     tree: Value,
-    /// In the order in which they were read.
+    /// Those that may vary, in the order in which they were read.
     fields: Vec<NumberField>,
+    /// How many numbers the request has.
+    count: usize,
+    /// The case as it flies, if it does.
+    case: Option<Case>,
     /// Reads a request: its case, and what is known of its flight.
     read: fn(Value) -> Option<(AvailableQuantities, Case)>,
 }
@@ -48,9 +52,27 @@ pub enum Change {
 }
 
 impl Numbers {
-    /// The numbers of a sound request, in which every default is filled in, and a function that reads such requests.
-    pub fn new(tree: Value, fields: Vec<NumberField>, read: fn(Value) -> Option<(AvailableQuantities, Case)>) -> Self {
-        Self { tree, fields, read }
+    /// The numbers of a sound request, in which every default is filled in, to which some pointers lead; its case, and a function that reads
+    /// such requests.
+    pub fn new(
+        tree: Value,
+        mut fields: Vec<NumberField>,
+        pointers: &[&str],
+        case: Option<Case>,
+        read: fn(Value) -> Option<(AvailableQuantities, Case)>,
+    ) -> Self {
+        let count = fields.len();
+        fields.retain(|field| pointers.iter().any(|pointer| leads_to(pointer, field)));
+        Self { tree, fields, count, case, read }
+    }
+
+    /// The bytes that the variations take in memory, at most.
+    pub fn bytes(&self) -> usize {
+        let numbers = self.fields.len().min(MOST_VARIED);
+        let of_tables = self.fields.iter().filter(|field| is_of_table(&field.pointer)).count().min(numbers);
+        let of_case = size_of::<Case>()
+            + self.case.as_ref().map_or(0, |case| case.events.len()) * size_of::<reentry::event::Event>();
+        CASES * (numbers * of_case + of_tables * self.count * OF_NUMBER)
     }
 
     /// The numbers to which a pointer points: one, or all of a list.
@@ -63,12 +85,7 @@ impl Numbers {
         if let Some(part) = NO_PART_OF_THE_CASE.iter().find(is_below) {
             return Err(format!("must not point into {part}, which is no part of what flies"));
         }
-        let is_there = |field: &&NumberField| match field.pointer.strip_prefix(pointer) {
-            Some("") => true,
-            Some(rest) => rest.starts_with('/') && rest.chars().all(|char| char == '/' || char.is_ascii_digit()),
-            None => false,
-        };
-        let found: Vec<_> = self.fields.iter().filter(is_there).collect();
+        let found: Vec<_> = self.fields.iter().filter(|field| leads_to(pointer, field)).collect();
         if !found.is_empty() {
             return Ok(found);
         }
@@ -109,7 +126,10 @@ impl Numbers {
         let variation = Variation::new(SMALL * size, |by| {
             let (of_moved, case) = self.moved(fields, change, by)?;
             known.borrow_mut().push((by, of_moved));
-            Some(case)
+            Some(match &self.case {
+                Some(as_flown) => case.sharing(as_flown),
+                None => case,
+            })
         });
         Some(Varied { variation: variation?, known: known.into_inner() })
     }
@@ -130,6 +150,20 @@ impl Numbers {
             "rad/s" if value <= 0.0 => 1e-4,
             _ => or_one,
         }
+    }
+}
+
+/// The cases that a variation has.
+const CASES: usize = 4;
+/// What an entry takes in a table of the core, bytes: a cubic and its knot, and what is derived of it.
+const OF_NUMBER: usize = 128;
+
+/// Whether a pointer leads to a number: it is that of the number, or of a list that has it.
+fn leads_to(pointer: &str, field: &NumberField) -> bool {
+    match field.pointer.strip_prefix(pointer) {
+        Some("") => true,
+        Some(rest) => rest.starts_with('/') && rest.chars().all(|char| char == '/' || char.is_ascii_digit()),
+        None => false,
     }
 }
 

@@ -395,7 +395,11 @@ impl SimulateRequest {
             tree.shift_remove("solution");
         }
         let (_, fields) = description::read_with_numbers(&mut tree, simulate_request)?;
-        let numbers = Numbers::new(tree, fields, known_and_case);
+        // A case that is not sound has faults of its own, and is not flown.
+        let case = self.try_into_scenario().ok().map(|scenario| scenario.case().clone());
+        let pointers: Vec<_> =
+            self.sensitivities.pointers().chain(self.dispersions.iter().flat_map(Dispersion::pointers)).collect();
+        let numbers = Numbers::new(tree, fields, &pointers, case, known_and_case);
         faults.extend(self.sensitivities.faults(self.known(), &self.events, &numbers));
         faults.extend(Dispersion::faults(&self.dispersions, &numbers));
         Ok(Some(numbers))

@@ -64,6 +64,12 @@ impl Asked {
         !matches!(self, Self::Nothing)
     }
 
+    /// The pointers of the numbers.
+    pub(super) fn pointers(&self) -> impl Iterator<Item = &str> {
+        let to: &[String] = if let Self::Matrix { to, .. } = self { to } else { &[] };
+        to.iter().map(String::as_str)
+    }
+
     /// What is wrong with the outputs and the pointers, in a request of which so much is known, and with these events.
     pub(super) fn faults(&self, known: AvailableQuantities, events: &[Event], numbers: &Numbers) -> Vec<Fault> {
         let Self::Matrix { of, to } = self else { return Vec::new() };

@@ -206,7 +206,12 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
             |_| json!({"oneOf": [{"type": "string"}, texts()]}),
             |reader, name| match reader.required(name)? {
                 Value::String(text) => Some(vec![text.clone()]),
-                _ => reader.strings(name, most),
+                Value::Array(_) => reader.strings(name, most),
+                other => {
+                    let detail = format!("must be a string or an array of strings, got {}", reader::kind_of(other));
+                    reader.fault_of(name, detail);
+                    None
+                }
             },
         )
     }
