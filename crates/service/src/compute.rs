@@ -24,7 +24,7 @@ use crate::memory::{HURRY, Memory};
 use crate::metrics::Metrics;
 use crate::rate::RateLimit;
 use slots::{Slot, Slots};
-use task::{Caller, Progress};
+use task::{Progress, Waiter};
 use turns::Turns;
 
 pub use task::Task;
@@ -73,7 +73,7 @@ impl Compute {
     }
 
     /// Runs a job of a route for a client, and runs it again where it found no room in memory. It is to stop soon after its flag is raised:
-    /// at the deadline, or when the caller is dropped.
+    /// at the deadline, or when whoever waits for it goes away.
     ///
     /// # Errors
     /// The job's own; [`ApiError::Busy`] at once when all places are taken, or when the memory is full; [`ApiError::TooManyRequests`] when
@@ -199,10 +199,10 @@ impl Compute {
         T: Send + 'static,
         F: FnMut(&Task) -> Result<T, ApiError> + Send + 'static,
     {
-        let (caller, call) = Caller::new();
+        let (waiter, state) = Waiter::new();
         let (done, mut result) = oneshot::channel();
         let task = Task {
-            call,
+            state,
             route,
             client,
             turns: Arc::clone(&pool.turns),
@@ -231,7 +231,7 @@ impl Compute {
             turn
         }));
         let late = |allowed: Duration| {
-            caller.is_late();
+            waiter.is_late();
             ApiError::DeadlineExceeded { seconds: allowed.as_secs_f64() }
         };
         let allowed = left.min(self.deadline);
@@ -240,7 +240,7 @@ impl Compute {
             tokio::select! {
                 biased;
                 over = &mut result => return over.map_err(|_| ApiError::Internal)?,
-                begun = timeout(left, caller.begun()) => begun.map_err(|_| late(left))?,
+                begun = timeout(left, waiter.begun()) => begun.map_err(|_| late(left))?,
             }
         }
         match timeout(allowed, result).await {

@@ -21,26 +21,26 @@ use crate::memory::{Budget, HURRY, SLOWEST};
 type Refuse = Box<dyn Fn(StatusCode) -> Vec<u8> + Send>;
 
 /// A stream of bytes that gives a client up that does not take what is sent to it.
-pub struct PatientStream {
+pub struct WriteTimeoutStream {
     stream: TcpStream,
     answers: Arc<Budget>,
     /// How long nothing may be taken.
-    patience: Duration,
-    stall: Option<Stall>,
-    signs: Arc<Signs>,
+    write_timeout: Duration,
+    stall: Option<StalledWrite>,
+    state: Arc<ConnectionState>,
     refuse: Refuse,
     /// Of the answer that is written in place of hyper's, what is still to be.
     refusal: Option<Bytes>,
 }
 
-/// What is known of the client.
+/// What a connection has shown of its client.
 #[derive(Debug, Default)]
-pub struct Signs {
+pub struct ConnectionState {
     has_spoken: AtomicBool,
     has_stalled: AtomicBool,
 }
 
-impl Signs {
+impl ConnectionState {
     /// Whether anything has come from it.
     pub fn has_spoken(&self) -> bool {
         self.has_spoken.load(Ordering::Relaxed)
@@ -54,17 +54,17 @@ impl Signs {
 
 /// An answer of which the system takes no more, as its client takes nothing.
 #[derive(Debug)]
-struct Stall {
+struct StalledWrite {
     since: Instant,
     /// Bytes that were taken since.
     taken: usize,
     tick: Pin<Box<Sleep>>,
 }
 
-impl PatientStream {
+impl WriteTimeoutStream {
     /// The stream of a client that may take nothing for so long.
-    pub fn new(stream: TcpStream, patience: Duration, answers: Arc<Budget>, refuse: Refuse) -> Self {
-        Self { stream, answers, patience, stall: None, signs: Arc::default(), refuse, refusal: None }
+    pub fn new(stream: TcpStream, write_timeout: Duration, answers: Arc<Budget>, refuse: Refuse) -> Self {
+        Self { stream, answers, write_timeout, stall: None, state: Arc::default(), refuse, refusal: None }
     }
 
     /// Writes the answer to a head that is no request in place of `own`, which is hyper's.
@@ -84,8 +84,8 @@ impl PatientStream {
     }
 
     /// What will be known of the client.
-    pub fn signs(&self) -> Arc<Signs> {
-        Arc::clone(&self.signs)
+    pub fn state(&self) -> Arc<ConnectionState> {
+        Arc::clone(&self.state)
     }
 
     /// What comes of an attempt to write so many bytes.
@@ -113,14 +113,18 @@ impl PatientStream {
     /// Waits for the client; ready when it is given up.
     #[expect(clippy::cast_precision_loss, reason = "an answer has far less than 2^52 bytes")]
     fn wait(&mut self, context: &mut Context) -> Poll<io::Error> {
-        let stall =
-            self.stall.get_or_insert_with(|| Stall { since: Instant::now(), taken: 0, tick: Box::pin(sleep(HURRY)) });
+        let stall = self.stall.get_or_insert_with(|| StalledWrite {
+            since: Instant::now(),
+            taken: 0,
+            tick: Box::pin(sleep(HURRY)),
+        });
         loop {
             ready!(stall.tick.as_mut().poll(context));
-            let patience = if self.answers.is_tight() { HURRY.min(self.patience) } else { self.patience };
-            let allowed = patience + Duration::from_secs_f64(stall.taken as f64 / SLOWEST as f64);
+            let write_timeout =
+                if self.answers.is_tight() { HURRY.min(self.write_timeout) } else { self.write_timeout };
+            let allowed = write_timeout + Duration::from_secs_f64(stall.taken as f64 / SLOWEST as f64);
             if stall.since.elapsed() >= allowed {
-                self.signs.has_stalled.store(true, Ordering::Relaxed);
+                self.state.has_stalled.store(true, Ordering::Relaxed);
                 // What the system still holds for this client goes with the connection. An error: there is no connection any more.
                 let _ = self.stream.set_zero_linger();
                 return Poll::Ready(io::Error::new(io::ErrorKind::TimedOut, "the client takes nothing"));
@@ -155,18 +159,18 @@ const VERSION: &[u8] = b"HTTP/1.1 ";
 /// Bytes of hyper's own answers at most: a status, a length, a date, and that the connection closes.
 const LONGEST_OWN_ANSWER: usize = 256;
 
-impl AsyncRead for PatientStream {
+impl AsyncRead for WriteTimeoutStream {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context, buffer: &mut ReadBuf) -> Poll<io::Result<()>> {
         let before = buffer.filled().len();
         let result = Pin::new(&mut self.stream).poll_read(context, buffer);
         if buffer.filled().len() > before {
-            self.signs.has_spoken.store(true, Ordering::Relaxed);
+            self.state.has_spoken.store(true, Ordering::Relaxed);
         }
         result
     }
 }
 
-impl AsyncWrite for PatientStream {
+impl AsyncWrite for WriteTimeoutStream {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let bytes = match own_answer(bytes) {
             Some((0, status)) => return self.write_refusal(context, status, bytes.len()),

@@ -222,7 +222,7 @@ pub async fn limit(State(app): State<AppState>, request: Request, next: Next) ->
         Ok(left) => (left, next.run(request).await),
         Err((left, refusal)) => (left, refusal.into_response()),
     };
-    limit.tell(left, response.headers_mut());
+    limit.write_headers(left, response.headers_mut());
     response
 }
 

@@ -43,9 +43,9 @@ pub struct RateLimit {
 /// When each client has all back, s since the start.
 type Allowances = Mutex<HashMap<Client, f64>>;
 
-/// What a client has left.
+/// What a client may still ask for.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Left {
+pub struct Remainder {
     requests: u32,
     /// Until it has all back, s.
     reset: f64,
@@ -63,7 +63,7 @@ impl RateLimit {
     ///
     /// # Errors
     /// What is left where that is not enough, with the seconds until it is.
-    pub fn take(&self, client: Client) -> Result<Left, (Left, ApiError)> {
+    pub fn take(&self, client: Client) -> Result<Remainder, (Remainder, ApiError)> {
         let now = self.now();
         let (mut networks, mut sites) = (lock(&self.networks), lock(&self.sites));
         let network = networks.entry(client.network()).or_insert(now);
@@ -96,17 +96,17 @@ impl RateLimit {
 
     /// What is left where all is back after so many seconds.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the burst, by the maximum")]
-    fn left(&self, reset: f64) -> Left {
+    fn left(&self, reset: f64) -> Remainder {
         // What is missing of a whole request is a rounding where it is this small.
         let requests = f64::from(self.burst) - reset / self.period + 1e-6;
-        Left { requests: requests.max(0.0) as u32, reset: reset.max(0.0) }
+        Remainder { requests: requests.max(0.0) as u32, reset: reset.max(0.0) }
     }
 
-    /// Says what is left, as the draft `draft-ietf-httpapi-ratelimit-headers` (10) has it.
-    pub fn tell(&self, left: Left, headers: &mut HeaderMap) {
+    /// Writes what is left into the headers, as the draft `draft-ietf-httpapi-ratelimit-headers` (10) has it.
+    pub fn write_headers(&self, left: Remainder, headers: &mut HeaderMap) {
         let Self { burst, period, .. } = self;
         let window = whole(f64::from(*burst) * period).max(1);
-        let Left { requests, reset } = left;
+        let Remainder { requests, reset } = left;
         for (name, text) in [
             (POLICY, format!("\"client\";q={burst};w={window}")),
             (LEFT, format!("\"client\";r={requests};t={}", whole(reset))),

@@ -21,7 +21,7 @@ use tokio::time::{interval, sleep, timeout};
 use tower::ServiceExt;
 
 use crate::client::Peer;
-use crate::connection::PatientStream;
+use crate::connection::WriteTimeoutStream;
 use crate::middleware::refuse_head;
 use crate::rate::FORGETTING;
 use crate::router::{app, metrics_app};
@@ -49,17 +49,17 @@ pub async fn serve(
     let forgetting = tokio::spawn(forget(state.clone()));
     // The metrics are told to the end, and keep nobody from it.
     let telling = metrics.map(|listener| {
-        let door = Door::new(metrics_app(state.clone()), state.clone(), METRICS_CONNECTIONS);
-        tokio::spawn(async move { door.accept(&listener, std::future::pending()).await })
+        let acceptor = Acceptor::new(metrics_app(state.clone()), state.clone(), METRICS_CONNECTIONS);
+        tokio::spawn(async move { acceptor.accept(&listener, std::future::pending()).await })
     });
     let grace = state.config.grace;
-    let door = Door::new(app(state.clone()), state.clone(), connections(state.config.connections));
-    door.accept(&listener, shutdown).await;
+    let acceptor = Acceptor::new(app(state.clone()), state.clone(), connections(state.config.connections));
+    acceptor.accept(&listener, shutdown).await;
     tracing::info!("going down: finishing what runs");
     state.drain();
-    door.accept_those_who_wait(&listener);
+    acceptor.accept_those_who_wait(&listener);
     drop(listener);
-    if timeout(grace, door.close()).await.is_err() {
+    if timeout(grace, acceptor.close()).await.is_err() {
         tracing::warn!("requests were still running at the end of the grace");
     }
     forgetting.abort();
@@ -96,8 +96,8 @@ async fn forget(state: AppState) {
     }
 }
 
-/// Where connections come in.
-struct Door {
+/// Accepts connections, and serves each in a task of its own.
+struct Acceptor {
     router: Router,
     state: AppState,
     room: Arc<Semaphore>,
@@ -105,7 +105,7 @@ struct Door {
     closing: watch::Sender<bool>,
 }
 
-impl Door {
+impl Acceptor {
     fn new(router: Router, state: AppState, connections: usize) -> Self {
         let room = Arc::new(Semaphore::new(connections.min(Semaphore::MAX_PERMITS)));
         Self { router, state, room, closing: watch::Sender::new(false) }
@@ -118,7 +118,7 @@ impl Door {
                 // The semaphore is never closed.
                 let Ok(room) = Arc::clone(&self.room).acquire_owned().await else { return };
                 match listener.accept().await {
-                    Ok((stream, peer)) => self.let_in(room, stream, peer),
+                    Ok((stream, peer)) => self.spawn(room, stream, peer),
                     Err(error) if is_of_the_client(&error) => {}
                     Err(error) => {
                         tracing::error!(%error, "cannot accept a connection");
@@ -138,14 +138,14 @@ impl Door {
         while let Ok(room) = Arc::clone(&self.room).try_acquire_owned()
             && let Some(Ok((stream, peer))) = listener.accept().now_or_never()
         {
-            self.let_in(room, stream, peer);
+            self.spawn(room, stream, peer);
         }
     }
 
-    fn let_in(&self, room: OwnedSemaphorePermit, stream: TcpStream, peer: SocketAddr) {
+    fn spawn(&self, room: OwnedSemaphorePermit, stream: TcpStream, peer: SocketAddr) {
         let (router, state, closing) = (self.router.clone(), self.state.clone(), self.closing.subscribe());
         tokio::spawn(async move {
-            converse(stream, peer, router, &state, closing).await;
+            serve_connection(stream, peer, router, &state, closing).await;
             drop(room);
         });
     }
@@ -169,7 +169,7 @@ fn is_of_the_client(error: &io::Error) -> bool {
 }
 
 /// Answers the requests of a connection until its end.
-async fn converse(
+async fn serve_connection(
     stream: TcpStream,
     peer: SocketAddr,
     router: Router,
@@ -182,8 +182,8 @@ async fn converse(
         let state = state.clone();
         Box::new(move |status| refuse_head(&state, peer, status))
     };
-    let stream = PatientStream::new(stream, state.config.idle, Arc::clone(&state.memory.answers), refuse);
-    let signs = stream.signs();
+    let stream = WriteTimeoutStream::new(stream, state.config.idle, Arc::clone(&state.memory.answers), refuse);
+    let client = stream.state();
     let answer = service_fn(move |mut request: Request<Incoming>| {
         request.extensions_mut().insert(Peer(peer));
         router.clone().oneshot(request.map(Body::new))
@@ -201,13 +201,13 @@ async fn converse(
         _ = connection.as_mut() => {}
         () = closed(&mut closing) => {
             // A client that has said nothing yet has nothing to lose.
-            if signs.has_spoken() {
+            if client.has_spoken() {
                 connection.as_mut().graceful_shutdown();
                 let _ = connection.await;
             }
         }
     }
-    state.metrics.disconnected(signs.has_stalled());
+    state.metrics.disconnected(client.has_stalled());
 }
 
 /// Waits until connections without a request are to end.

@@ -22,7 +22,7 @@ use crate::rate::RateLimit;
 
 /// What a job and the one who waits for it have in common.
 #[derive(Debug, Default)]
-pub(super) struct Call {
+pub(super) struct JobState {
     /// Tells that the job has begun.
     begun: Notify,
     /// Raised when nobody waits any more.
@@ -34,13 +34,13 @@ pub(super) struct Call {
 }
 
 /// Somebody who waits for a job; the flag is raised when they stop waiting.
-pub(super) struct Caller(Arc<Call>);
+pub(super) struct Waiter(Arc<JobState>);
 
-impl Caller {
+impl Waiter {
     /// Somebody who waits, and what they have in common with the job.
-    pub(super) fn new() -> (Self, Arc<Call>) {
-        let call = Arc::default();
-        (Self(Arc::clone(&call)), call)
+    pub(super) fn new() -> (Self, Arc<JobState>) {
+        let state = Arc::default();
+        (Self(Arc::clone(&state)), state)
     }
 
     /// The time of the job has run out.
@@ -54,7 +54,7 @@ impl Caller {
     }
 }
 
-impl Drop for Caller {
+impl Drop for Waiter {
     fn drop(&mut self) {
         self.0.interrupt.store(true, Ordering::Relaxed);
         self.0.given_up.notify_one();
@@ -66,7 +66,7 @@ impl Drop for Caller {
 /// It holds memory for its answer, and where there is none, it gives back what it holds, and begins anew when there is.
 #[derive(Debug)]
 pub struct Task {
-    pub(super) call: Arc<Call>,
+    pub(super) state: Arc<JobState>,
     pub(super) route: &'static str,
     pub(super) client: Client,
     pub(super) turns: Arc<Turns>,
@@ -152,7 +152,7 @@ impl Task {
     /// Begins, on the thread of a turn.
     pub(super) fn begin(&self, turn: Turn) {
         self.metrics.job_begun(self.route, self.asked.elapsed());
-        self.call.begun.notify_one();
+        self.state.begun.notify_one();
         let mut progress = self.lock();
         progress.turn = Some(turn);
         progress.begin = Some(processor_time());
@@ -203,7 +203,7 @@ impl Task {
     }
 
     fn is_over(&self) -> bool {
-        self.call.interrupt.load(Ordering::Relaxed)
+        self.state.interrupt.load(Ordering::Relaxed)
     }
 
     /// Ends the job.
@@ -214,7 +214,7 @@ impl Task {
     fn end(&self, progress: &mut Progress, refusal: ApiError) {
         progress.refusal = Some(refusal);
         progress.was_refused = true;
-        self.call.interrupt.store(true, Ordering::Relaxed);
+        self.state.interrupt.store(true, Ordering::Relaxed);
     }
 
     /// Gives way to short jobs, if it is long.
@@ -249,7 +249,7 @@ impl Task {
         progress.turn = Handle::current().block_on(async {
             tokio::select! {
                 biased;
-                () = self.call.given_up.notified() => None,
+                () = self.state.given_up.notified() => None,
                 turn = turn => turn.ok(),
             }
         });
@@ -316,8 +316,8 @@ impl Drop for Task {
             // The service ends, and with it its threads.
             return;
         }
-        if self.call.interrupt.load(Ordering::Relaxed) && !progress.was_refused {
-            let is_late = self.call.is_late.load(Ordering::Relaxed);
+        if self.state.interrupt.load(Ordering::Relaxed) && !progress.was_refused {
+            let is_late = self.state.is_late.load(Ordering::Relaxed);
             self.metrics.job_cancelled(self.route, if is_late { "deadline" } else { "disconnect" });
             if progress.is_long {
                 self.turns.note_given_up(Instant::now().into_std());
