@@ -95,7 +95,7 @@ impl<P: Scalar> Thrust<P> {
     ///
     /// // An exhaust of 3 km/s: a kilogram a second gives 3 kN.
     /// let specific_impulse = Some(3000.0 / 9.806_65);
-    /// let thrust = Thrust { along: ThrustAxis::Velocity, force: -3000.0, specific_impulse, propellant: None };
+    /// let thrust: Thrust = Thrust { along: ThrustAxis::Velocity, force: -3000.0, specific_impulse, propellant: None };
     /// assert!((thrust.mass_flow() - 1.0).abs() < 1e-15);
     /// ```
     pub fn mass_flow(&self) -> P {
