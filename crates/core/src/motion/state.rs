@@ -25,13 +25,6 @@ impl<S: Scalar> State<S> {
         PlanetFixed { position: self.position, velocity: self.velocity }
     }
 
-    /// The same vehicle at another place or in another motion.
-    #[inline(always)]
-    #[must_use]
-    pub fn with(&self, PlanetFixed { position, velocity }: PlanetFixed<S>) -> Self {
-        Self { position, velocity, ..*self }
-    }
-
     /// The same in other numbers.
     pub fn map<T: nalgebra::Scalar>(&self, number: impl Fn(S) -> T + Copy) -> State<T> {
         State {

@@ -40,8 +40,11 @@ pub(super) fn dispersion(object: &mut Object) -> Option<Dispersion> {
          together.",
     );
     let pointers = object
-        .field("pointer", "Number").doc("The JSON pointer of a number in the case, or of a list of numbers, which move together; for a multivariate distribution \
-             one for each variable.")
+        .field("pointer", "Number")
+        .doc(
+            "The JSON pointer of a number in the case, or of a list of numbers, which move together; for a multivariate distribution \
+             one for each variable.",
+        )
         .text_or_texts(MOST_VARIED);
     let offset = |object: &mut Object| {
         let field =
@@ -138,26 +141,16 @@ impl Dispersion {
 
     /// What is wrong with the pointers of dispersions.
     pub(super) fn faults(dispersions: &[Self], numbers: &Numbers) -> Vec<Fault> {
-        let mut faults = Vec::new();
-        let mut seen: Vec<&str> = Vec::new();
-        for (index, dispersion) in dispersions.iter().enumerate() {
-            for (place, pointer) in dispersion.pointers.iter().enumerate() {
-                let at = match dispersion.pointers.len() {
-                    1 => format!("/dispersions/{index}/pointer"),
-                    _ => format!("/dispersions/{index}/pointer/{place}"),
-                };
-                match numbers.at(pointer) {
-                    Err(detail) => faults.push(Fault::new(at, detail)),
-                    Ok(fields) => {
-                        if let Some(twice) = fields.iter().find(|field| seen.contains(&field.pointer.as_str())) {
-                            faults.push(Fault::new(at, format!("{} is given twice", twice.pointer)));
-                        }
-                        seen.extend(fields.iter().map(|field| field.pointer.as_str()));
-                    }
-                }
-            }
-        }
-        faults
+        let places = dispersions.iter().enumerate().flat_map(|(index, dispersion)| dispersion.places(index));
+        numbers.faults(places).1
+    }
+
+    /// The pointers of the dispersion at `index` of a request, each with where it stands there.
+    fn places(&self, index: usize) -> impl Iterator<Item = (String, &String)> {
+        self.pointers.iter().enumerate().map(move |(place, pointer)| match self.pointers.len() {
+            1 => (format!("/dispersions/{index}/pointer"), pointer),
+            _ => (format!("/dispersions/{index}/pointer/{place}"), pointer),
+        })
     }
 
     /// The variables of dispersions, in their order, each as a variation with what is known where it is moved; not all of them once
@@ -172,12 +165,12 @@ impl Dispersion {
     ) -> Result<Vec<Varied>, Fault> {
         let mut variations = Vec::new();
         for (index, dispersion) in dispersions.iter().enumerate() {
-            for pointer in &dispersion.pointers {
+            for (at, pointer) in dispersion.places(index) {
                 if interrupt.is_raised() {
                     break;
                 }
                 let fields = numbers.at(pointer).unwrap_or_default();
-                let immovable = || Fault::new(format!("/dispersions/{index}/pointer"), immovable(pointer));
+                let immovable = || Fault::new(at, immovable(pointer));
                 variations.push(numbers.variation(&fields, dispersion.change).ok_or_else(immovable)?);
             }
         }

@@ -7,7 +7,7 @@ use reentry::sensitivity::Variation;
 use serde_json::{Value, json};
 
 use super::columns::AvailableQuantities;
-use super::reader::NumberField;
+use super::reader::{Fault, NumberField};
 use super::schema::ANGLE;
 use super::shown::shown;
 
@@ -95,6 +95,25 @@ impl Numbers {
             None => "nothing".to_owned(),
         };
         Err(format!("must point to a number of the case, or to a list of numbers, got {got}"))
+    }
+
+    /// How many numbers these pointers lead to, and what is wrong with the pointers, each given with where it stands in the request: it leads to
+    /// no number, or to one to which a pointer before it leads.
+    pub(super) fn faults<'p>(&self, places: impl Iterator<Item = (String, &'p String)>) -> (usize, Vec<Fault>) {
+        let mut faults = Vec::new();
+        let mut seen: Vec<&str> = Vec::new();
+        for (at, pointer) in places {
+            match self.at(pointer) {
+                Err(detail) => faults.push(Fault::new(at, detail)),
+                Ok(fields) => {
+                    if let Some(twice) = fields.iter().find(|field| seen.contains(&field.pointer.as_str())) {
+                        faults.push(Fault::new(at, format!("{} is given twice", twice.pointer)));
+                    }
+                    seen.extend(fields.iter().map(|field| field.pointer.as_str()));
+                }
+            }
+        }
+        (seen.len(), faults)
     }
 
     /// The value of a number, in the unit of the request.

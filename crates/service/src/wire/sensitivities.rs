@@ -43,8 +43,11 @@ const MOST_OUTPUTS: usize = 64;
 /// The field `sensitivities` of a request.
 pub(super) fn asked(object: &mut Object) -> Option<Asked> {
     object
-        .field("sensitivities", "Sensitivities of the end").doc("Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV or on \
-             a map.")
+        .field("sensitivities", "Sensitivities of the end")
+        .doc(
+            "Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV \
+             or on a map.",
+        )
         .default(false)
         .boolean_or(&SENSITIVITIES, |asked| if asked { Asked::OfTheEnd } else { Asked::Nothing }, matrix)
 }
@@ -53,7 +56,11 @@ fn matrix(object: &mut Object) -> Option<Asked> {
     object.named("SensitivityMatrix", "The derivatives of outputs by numbers of the case.");
     let of = object.field("of", "Of").doc("The outputs.").objects([1, MOST_OUTPUTS], output);
     let to = object
-        .field("to", "To").doc("JSON pointers of numbers in this request, as `echo` shows it; of a list of numbers each is meant. Together at most 64 numbers.")
+        .field("to", "To")
+        .doc(
+            "JSON pointers of numbers in this request, as `echo` shows it; of a list of numbers each is meant. Together at most 64 \
+             numbers.",
+        )
         .texts(MOST_VARIED);
     Some(Asked::Matrix { of: of?, to: to? })
 }
@@ -77,21 +84,11 @@ impl Asked {
             output.fault(&format!("/sensitivities/of/{index}"), known, events)
         };
         let mut faults: Vec<_> = of.iter().enumerate().filter_map(place).collect();
-        let mut seen: Vec<&str> = Vec::new();
-        for (index, pointer) in to.iter().enumerate() {
-            let at = format!("/sensitivities/to/{index}");
-            match numbers.at(pointer) {
-                Err(detail) => faults.push(Fault::new(at, detail)),
-                Ok(fields) => {
-                    if let Some(twice) = fields.iter().find(|field| seen.contains(&field.pointer.as_str())) {
-                        faults.push(Fault::new(at, format!("{} is given twice", twice.pointer)));
-                    }
-                    seen.extend(fields.iter().map(|field| field.pointer.as_str()));
-                }
-            }
-        }
-        if seen.len() > MOST_VARIED {
-            let detail = format!("must be pointers of at most {MOST_VARIED} numbers together, got {}", seen.len());
+        let places = to.iter().enumerate().map(|(index, pointer)| (format!("/sensitivities/to/{index}"), pointer));
+        let (count, of_pointers) = numbers.faults(places);
+        faults.extend(of_pointers);
+        if count > MOST_VARIED {
+            let detail = format!("must be pointers of at most {MOST_VARIED} numbers together, got {count}");
             faults.push(Fault::new("/sensitivities/to", detail));
         }
         faults
