@@ -348,6 +348,12 @@ async fn faulty_dispersions_are_refused() {
             "/factor/covariance/1/0",
             "must be that of row 0 and column 1, 0.5: a covariance is symmetric; got 0.4",
         ),
+        (
+            json!({"pointer": ["/vehicle/mass", "/vehicle/mass"],
+                "factor": {"type": "multivariate_normal", "covariance": [[1, 0], [0, 1]]}}),
+            "/pointer/1",
+            "/vehicle/mass is given twice",
+        ),
     ] {
         let case = with(&capsule(), "/dispersions", json!([dispersion]));
         let answer = Service::new().post("/simulate", &case).await;
