@@ -264,8 +264,16 @@ async fn batches_take_turns() {
         };
         (0..3).map(note).collect()
     };
+    // The one worker of batches is taken until both wait for it.
+    let (release, released) = std::sync::mpsc::channel();
+    let hold = move |_: &Task| released.recv().map_err(|_| ApiError::Interrupted);
+    let _held = compute.run_batch("/simulate/batch", Client::default(), vec![hold], LONG).unwrap();
     let mut batches = ["first", "second"]
         .map(|name| compute.run_batch("/simulate/batch", Client::default(), jobs(name), LONG).unwrap());
+    for _ in 0..10 {
+        yield_now().await;
+    }
+    release.send(()).unwrap();
     for batch in &mut batches {
         while batch.recv().await.is_some() {}
     }

@@ -7,7 +7,7 @@ mod phase;
 
 pub use bounds::Bound;
 
-pub(crate) use dispatch::{ForFormulation, FormulationIn, Held, dispatch};
+pub(crate) use dispatch::{ForFormulation, FormulationIn, StateLayout, dispatch};
 pub(crate) use numbers::Numbers;
 pub(crate) use phase::Phase;
 
@@ -372,16 +372,16 @@ impl Case {
     }
 
     /// What its states hold.
-    pub(crate) fn held(&self) -> Held {
-        self.held_with(self.heating.is_some())
+    pub(crate) fn state_layout(&self) -> StateLayout {
+        self.state_layout_with(self.heating.is_some())
     }
 
     /// What its states hold, with the heat load or without.
-    pub(crate) fn held_with(&self, heat_load: bool) -> Held {
+    pub(crate) fn state_layout_with(&self, heat_load: bool) -> StateLayout {
         match (self.burns_propellant(), heat_load) {
-            (true, _) => Held::HeatLoadAndMass,
-            (false, true) => Held::HeatLoad,
-            (false, false) => Held::Nothing,
+            (true, _) => StateLayout::HeatLoadAndMass,
+            (false, true) => StateLayout::HeatLoad,
+            (false, false) => StateLayout::Motion,
         }
     }
 

@@ -20,7 +20,7 @@ use crate::simulate::SimulationError;
 use crate::trajectory::Trajectory;
 use crate::vehicle::Aerodynamics;
 use follow::{Follow, Place};
-use variation::{Dual, Varied};
+use variation::{Dual, VariedCase};
 
 /// How a quantity changes with the numbers of a case, each by itself: SI units and radians over SI units and radians.
 ///
@@ -79,14 +79,14 @@ const UNDEFINED: f64 = 1e-6;
 pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<Sensitivities, SimulationError> {
     let case = &flight.case;
     let variations = of_gradient(case);
-    let held = case.held_with(waits_for_heat_load(case));
+    let held = case.state_layout_with(waits_for_heat_load(case));
     // Of the time, the longitude, the latitude, the speed and the flight-path angle.
     let mut slopes = [[f64::NAN; INPUTS]; 5];
     for (pass, variations) in variations.chunks(WIDTH).enumerate() {
         let first = pass * WIDTH;
         let follow = Follow {
             flight,
-            varied: Varied { case, variations, start: Some(start_of_gradient(case, first)) },
+            varied: VariedCase { case, variations, start: Some(start_of_gradient(case, first)) },
             changes_models: &[false; WIDTH],
             places: &[Place::End],
             with_ground_distance: false,
@@ -175,7 +175,7 @@ fn start_of_gradient(case: &Case, first: usize) -> PlanetFixed<Dual<WIDTH>> {
     let path: [f64; 6] = FlightPath::from_planet_fixed(&case.initial_state).into();
     let number = |index: usize| {
         let slope = |input: usize| if first + input == INPUTS - 6 + index { 1.0 } else { 0.0 };
-        Varied::<WIDTH>::dual(path[index], std::array::from_fn(slope))
+        VariedCase::<WIDTH>::dual(path[index], std::array::from_fn(slope))
     };
     FlightPath::from(std::array::from_fn(number)).to_planet_fixed()
 }

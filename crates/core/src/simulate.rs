@@ -124,7 +124,7 @@ fn name(switch: Switch) -> &'static str {
 /// of the vehicle or brakes it to rest, and when interrupted.
 pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
     let case = scenario.case();
-    dispatch(case.solver.equations, case.held(), Record { scenario, interrupt })
+    dispatch(case.solver.equations, case.state_layout(), Record { scenario, interrupt })
 }
 
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and, but for events, allocates no memory.
@@ -133,7 +133,7 @@ pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajec
 /// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
 pub fn arrival(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Arrival, SimulationError> {
     let case = scenario.case();
-    dispatch(case.solver.equations, case.held(), End { scenario, interrupt })
+    dispatch(case.solver.equations, case.state_layout(), End { scenario, interrupt })
 }
 
 /// A flight of which the end alone is wanted.

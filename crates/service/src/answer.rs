@@ -24,7 +24,7 @@ use crate::wire::events::Event;
 use crate::wire::numbers::Varied;
 use crate::wire::outputs::{AvailableWhereMoved, OutputNumber};
 use crate::wire::scenario::{FlightRequest, RequestedOutput};
-use crate::wire::sensitivities::{Asked, GivenSensitivities, Matrix, Method, Sensitivities};
+use crate::wire::sensitivities::{Matrix, Method, RequestedSensitivities, Sensitivities, SensitivitiesAnswer};
 use crate::wire::track::Track;
 use crate::wire::trajectory::{RequestedAnalyses, SimulateResponse};
 use crate::wire::verification::Verification;
@@ -50,7 +50,7 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
     if !flight.measure_ground_track(interrupt) {
         return Err(ApiError::Interrupted);
     }
-    let mut held = Held::new(&flight, interrupt);
+    let mut held = HeldMemory::new(&flight, interrupt);
     let points = rows(&request, &flight, row_limit, &mut held)?;
     let work = work(&flight, points.as_deref());
     let analyses = analyses(&request, &flight, &mut held)?;
@@ -83,7 +83,11 @@ fn requested_output(format: Format) -> RequestedOutput {
 }
 
 /// What a request asks for beyond the flight.
-fn analyses(requested: &FlightRequest, flight: &Trajectory, held: &mut Held) -> Result<RequestedAnalyses, ApiError> {
+fn analyses(
+    requested: &FlightRequest,
+    flight: &Trajectory,
+    held: &mut HeldMemory,
+) -> Result<RequestedAnalyses, ApiError> {
     let interrupt = held.interrupt;
     let request = &requested.request;
     let mut analyses = RequestedAnalyses {
@@ -108,18 +112,18 @@ fn analyses(requested: &FlightRequest, flight: &Trajectory, held: &mut Held) -> 
 fn sensitivities(
     requested: &FlightRequest,
     flight: &Trajectory,
-    held: &mut Held,
-) -> Result<Option<GivenSensitivities>, ApiError> {
+    held: &mut HeldMemory,
+) -> Result<Option<SensitivitiesAnswer>, ApiError> {
     let interrupt = held.interrupt;
     let request = &requested.request;
     let of = match &request.sensitivities {
-        Asked::Nothing => return Ok(None),
-        Asked::OfTheEnd => {
+        RequestedSensitivities::Nothing => return Ok(None),
+        RequestedSensitivities::FinalState => {
             let core = sensitivity::sensitivities(flight, interrupt)?;
-            let of_the_end = Sensitivities::from_core(&core, request.angle_unit);
-            return Ok(Some(GivenSensitivities::OfTheEnd(Box::new(of_the_end))));
+            let of_final_state = Sensitivities::from_core(&core, request.angle_unit);
+            return Ok(Some(SensitivitiesAnswer::FinalState(Box::new(of_final_state))));
         }
-        Asked::Matrix { of, .. } => of,
+        RequestedSensitivities::Matrix { of, .. } => of,
     };
     let Some(numbers) = &requested.numbers else { return Ok(None) };
     held.reserve(held.bytes + numbers.bytes())?;
@@ -138,11 +142,15 @@ fn sensitivities(
         if variation.changes_models(case) { Method::Differences } else { Method::Exact }
     };
     let methods: Vec<_> = variations.iter().map(method).collect();
-    Ok(Some(GivenSensitivities::Matrix(Matrix::new(&outputs, numbers, slopes, &methods))))
+    Ok(Some(SensitivitiesAnswer::Matrix(Matrix::new(&outputs, numbers, slopes, &methods))))
 }
 
 /// The covariance for which a request asks.
-fn covariance(requested: &FlightRequest, flight: &Trajectory, held: &mut Held) -> Result<Option<Covariance>, ApiError> {
+fn covariance(
+    requested: &FlightRequest,
+    flight: &Trajectory,
+    held: &mut HeldMemory,
+) -> Result<Option<Covariance>, ApiError> {
     let interrupt = held.interrupt;
     let request = &requested.request;
     let Some(numbers) = requested.numbers.as_ref().filter(|_| !request.dispersions.is_empty()) else { return Ok(None) };
@@ -185,7 +193,7 @@ fn rows(
     requested: &FlightRequest,
     flight: &Trajectory,
     limit: usize,
-    held: &mut Held,
+    held: &mut HeldMemory,
 ) -> Result<Option<Vec<FlightPoint>>, ApiError> {
     let Some((sampling, pointer)) = &requested.request.output.sampling else { return Ok(None) };
     let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
@@ -233,7 +241,7 @@ const ROWS_BETWEEN_LOOKS: usize = 2048;
 /// When the state is not sound.
 pub fn convert(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let response = ConvertResponse::try_from_tree(tree).map_err(ApiError::Invalid)?;
-    let mut out = Written::new(Held::nothing(interrupt));
+    let mut out = Written::new(HeldMemory::nothing(interrupt));
     let written = serde_json::to_writer(&mut out, &response);
     Ok(Answer { body: out.whole(written)?, work: Work::default() })
 }
@@ -245,7 +253,7 @@ pub fn convert(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiErro
 pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let analytic = TheoryRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
     let flight = fly(&analytic.flight.scenario, interrupt)?;
-    let mut held = Held::new(&flight, interrupt);
+    let mut held = HeldMemory::new(&flight, interrupt);
     let points = rows(&analytic.flight, &flight, row_limit, &mut held)?.unwrap_or_default();
     let work = work(&flight, Some(&points));
     let analyses = analyses(&analytic.flight, &flight, &mut held)?;
@@ -258,7 +266,7 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
 }
 
 /// What an answer holds in memory while it is made, beside its text.
-struct Held<'a> {
+struct HeldMemory<'a> {
     interrupt: &'a dyn Interrupt,
     /// The steps of the flight, and its rows.
     bytes: usize,
@@ -271,7 +279,7 @@ struct Held<'a> {
 /// What a number takes in the text, bytes; for a map as many are reserved, which hold its places and their text.
 const NUMBER: usize = 20;
 
-impl<'a> Held<'a> {
+impl<'a> HeldMemory<'a> {
     fn nothing(interrupt: &'a dyn Interrupt) -> Self {
         Self { interrupt, bytes: 0, reserved: 0, rows: 0 }
     }
@@ -303,7 +311,7 @@ impl<'a> Held<'a> {
 /// Text that is being written until a flag is raised, or there is no memory for it.
 struct Written<'a> {
     text: Vec<u8>,
-    held: Held<'a>,
+    held: HeldMemory<'a>,
     /// The length at which the flag is looked at next.
     look: usize,
 }
@@ -312,7 +320,7 @@ struct Written<'a> {
 const BYTES_BETWEEN_LOOKS: usize = 1 << 18;
 
 impl<'a> Written<'a> {
-    fn new(held: Held<'a>) -> Self {
+    fn new(held: HeldMemory<'a>) -> Self {
         Self { text: Vec::new(), held, look: BYTES_BETWEEN_LOOKS }
     }
 

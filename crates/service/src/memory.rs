@@ -45,11 +45,11 @@ impl Memory {
 #[derive(Debug)]
 pub struct Budget {
     limit: usize,
-    held: Mutex<Held>,
+    held: Mutex<HeldBytes>,
 }
 
 #[derive(Debug, Default)]
-struct Held {
+struct HeldBytes {
     all: usize,
     clients: HashMap<Client, usize>,
     /// When somebody found no room.
@@ -111,12 +111,12 @@ impl Budget {
         }
     }
 
-    fn lock(&self) -> MutexGuard<'_, Held> {
+    fn lock(&self) -> MutexGuard<'_, HeldBytes> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Held {
+impl HeldBytes {
     fn of(&self, client: Client) -> usize {
         self.clients.get(&client).copied().unwrap_or(0)
     }

@@ -23,12 +23,12 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub(crate) struct Connections {
     address: SocketAddr,
     most: usize,
-    state: Mutex<Held>,
+    state: Mutex<ConnectionState>,
 }
 
 /// What there is of connections.
 #[derive(Debug, Default)]
-struct Held {
+struct ConnectionState {
     free: Vec<Connection>,
     open: usize,
 }
@@ -47,7 +47,7 @@ impl Connections {
         self.held(|held| held.open)
     }
 
-    fn held<T>(&self, look: impl FnOnce(&mut Held) -> T) -> T {
+    fn held<T>(&self, look: impl FnOnce(&mut ConnectionState) -> T) -> T {
         look(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

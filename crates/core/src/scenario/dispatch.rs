@@ -64,23 +64,23 @@ pub(crate) trait ForFormulation {
 
 /// What a state holds beside place and motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Held {
-    /// Nothing more.
-    Nothing,
+pub(crate) enum StateLayout {
+    /// Nothing.
+    Motion,
     /// The heat load.
     HeatLoad,
     /// The heat load and the mass.
     HeatLoadAndMass,
 }
 
-/// Does a computation with the formulation that a case asks for, whose states hold so much.
-pub(crate) fn dispatch<C: ForFormulation>(equations: Equations, held: Held, computation: C) -> C::Output {
-    match (equations, held) {
-        (Equations::Cartesian, Held::Nothing) => computation.with::<Cartesian, 6>(),
-        (Equations::Spherical, Held::Nothing) => computation.with::<Spherical, 6>(),
-        (Equations::Cartesian, Held::HeatLoad) => computation.with::<Cartesian, 7>(),
-        (Equations::Cartesian, Held::HeatLoadAndMass) => computation.with::<Cartesian, 8>(),
-        (Equations::Spherical, Held::HeatLoad) => computation.with::<Spherical, 7>(),
-        (Equations::Spherical, Held::HeatLoadAndMass) => computation.with::<Spherical, 8>(),
+/// Does a computation with the formulation that a case asks for, whose states have this layout.
+pub(crate) fn dispatch<C: ForFormulation>(equations: Equations, layout: StateLayout, computation: C) -> C::Output {
+    match (equations, layout) {
+        (Equations::Cartesian, StateLayout::Motion) => computation.with::<Cartesian, 6>(),
+        (Equations::Spherical, StateLayout::Motion) => computation.with::<Spherical, 6>(),
+        (Equations::Cartesian, StateLayout::HeatLoad) => computation.with::<Cartesian, 7>(),
+        (Equations::Cartesian, StateLayout::HeatLoadAndMass) => computation.with::<Cartesian, 8>(),
+        (Equations::Spherical, StateLayout::HeatLoad) => computation.with::<Spherical, 7>(),
+        (Equations::Spherical, StateLayout::HeatLoadAndMass) => computation.with::<Spherical, 8>(),
     }
 }

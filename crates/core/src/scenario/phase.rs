@@ -34,13 +34,13 @@ fn vehicle<P: Scalar>(numbers: &impl Numbers<P>) -> Vehicle<P> {
     Vehicle {
         mass: numbers.number(|case| case.vehicle.mass),
         reference_area: numbers.number(|case| case.vehicle.reference_area),
-        aerodynamics: aerodynamics_in(numbers, |case| &case.vehicle.aerodynamics),
+        aerodynamics: varied_aerodynamics(numbers, |case| &case.vehicle.aerodynamics),
         nose_radius: numbers.case().vehicle.nose_radius,
     }
 }
 
 /// The aerodynamics at a place of the case.
-fn aerodynamics_in<P: Scalar>(numbers: &impl Numbers<P>, of: impl Fn(&Case) -> &Aerodynamics) -> Aerodynamics<P> {
+fn varied_aerodynamics<P: Scalar>(numbers: &impl Numbers<P>, of: impl Fn(&Case) -> &Aerodynamics) -> Aerodynamics<P> {
     let [first, second] = [0, 1].map(|index| numbers.number(|case| of(case).numbers()[index]));
     match of(numbers.case()) {
         Aerodynamics::Constant { .. } => Aerodynamics::Constant { lift_coefficient: first, drag_coefficient: second },
@@ -120,7 +120,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         let vehicle = Vehicle {
             reference_area: number(|effect| effect.reference_area).unwrap_or(reference_area),
             aerodynamics: match effect.aerodynamics {
-                Some(_) => aerodynamics_in(numbers, |case| {
+                Some(_) => varied_aerodynamics(numbers, |case| {
                     case.events[event].then.aerodynamics.as_ref().unwrap_or(&case.vehicle.aerodynamics)
                 }),
                 None => aerodynamics,

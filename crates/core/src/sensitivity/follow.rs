@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use num_dual::Dual64;
 
-use super::variation::{Dual, Varied};
+use super::variation::{Dual, VariedCase};
 use super::varied_forces::{VariedForces, VariedMotion};
 use crate::coordinates::GreatCircle;
 use crate::event::{Condition, Quantity, Trigger};
@@ -27,7 +27,7 @@ const ON_VALUE: f64 = 1e-6;
 /// A place of a flight at which its state is wanted with derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
-    /// The initial state, before what happens at t = 0.
+    /// The initial state, before what happens there.
     Start,
     /// At a time inside a step, s, whatever varies.
     Inside { step: usize, time: f64 },
@@ -57,7 +57,7 @@ pub(super) struct Sample<const W: usize> {
 /// What is to be followed.
 pub(super) struct Follow<'a, const W: usize> {
     pub(super) flight: &'a Trajectory,
-    pub(super) varied: Varied<'a, W>,
+    pub(super) varied: VariedCase<'a, W>,
     /// Which of the variations are of numbers in the models.
     pub(super) changes_models: &'a [bool],
     pub(super) places: &'a [Place],
@@ -93,7 +93,8 @@ impl<const W: usize> ForFormulation for Follow<'_, W> {
 struct Follower<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> {
     of: &'a Follow<'a, W>,
     phase: Phase<Dual<W>>,
-    number: usize,
+    /// The place of the phase among those that were flown.
+    phase_index: usize,
     forces: VariedForces<W>,
     motion: VariedMotion<F, N, W>,
     state: [Dual<W>; N],
@@ -116,7 +117,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let forces = VariedForces::new(varied, changes_models, &phase, &flight.flown.phases[0], mode);
         let mut follower = Self {
             of,
-            number: 0,
+            phase_index: 0,
             motion: forces.motion(),
             forces,
             state: F::numbers(&State {
@@ -190,7 +191,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let time = step.start_time();
         let records = &self.of.flight.flown.event_records[self.happened..];
         let now = records.iter().take_while(|record| record.before.time <= time).count();
-        if (step.phase, step.mode) == (self.number, self.forces.mode()) && now == 0 {
+        if (step.phase, step.mode) == (self.phase_index, self.forces.mode()) && now == 0 {
             if index > 0 {
                 self.keep(Place::StepEnd(index - 1), Dual::from(time));
             }
@@ -231,7 +232,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             self.apply_impulse(record, delay);
             if !self.of.flight.case.events[record.event].then.is_none() {
                 self.set_phase(self.phase.after(record.event, &self.of.varied, instant, self.mass()));
-                self.number = record.after.phase;
+                self.phase_index = record.after.phase;
             }
             self.happened += 1;
             if self.of.places.contains(&Place::After(place)) {
@@ -251,9 +252,9 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
 
     /// Goes on to the phase of a number to which time alone leads: propellant is spent, canopies begin to fill or are full.
     fn change_by_time(&mut self, number: usize, delay: Dual<W>) {
-        while self.number < number {
-            self.number += 1;
-            let since = self.of.flight.flown.phases[self.number].since;
+        while self.phase_index < number {
+            self.phase_index += 1;
+            let since = self.of.flight.flown.phases[self.phase_index].since;
             self.set_phase(self.phase.after_next_change(delay + since, self.mass()));
         }
     }

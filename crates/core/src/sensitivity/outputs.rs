@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::WIDTH;
 use super::follow::{Follow, Place, Sample};
-use super::variation::{CENTRAL, Dual, Node, Variation, Varied, slope};
+use super::variation::{CENTRAL, Dual, Node, Variation, VariedCase, slope};
 use crate::interrupt::Interrupt;
 use crate::motion::State;
 use crate::root::bracketed;
@@ -112,7 +112,7 @@ fn add_slopes(
             wanted.push(*place);
         }
     }
-    let varied = Varied::<WIDTH> { case, variations, start: None };
+    let varied = VariedCase::<WIDTH> { case, variations, start: None };
     let follow = Follow {
         flight,
         varied,
@@ -121,8 +121,9 @@ fn add_slopes(
         with_ground_distance: outputs.iter().any(|output| output.takes_ground_distance),
         interrupt,
     };
-    let samples = dispatch(case.solver.equations, case.held(), follow)?;
-    let near: Vec<_> = samples.iter().map(|sample| Some(Near::new(flight, &varied, first, sample.as_ref()?))).collect();
+    let samples = dispatch(case.solver.equations, case.state_layout(), follow)?;
+    let near: Vec<_> =
+        samples.iter().map(|sample| Some(VariedSample::new(flight, &varied, first, sample.as_ref()?))).collect();
     for ((place, output), row) in places.iter().zip(outputs).zip(slopes) {
         let near = place.and_then(|place| near[wanted.iter().position(|wanted| *wanted == place)?].as_ref());
         let Some(near) = near else {
@@ -137,20 +138,20 @@ fn add_slopes(
 }
 
 /// The points near a sample, by which outputs have their slopes.
-struct Near<'a, const W: usize> {
+struct VariedSample<'a, const W: usize> {
     flight: &'a Trajectory,
-    varied: &'a Varied<'a, W>,
+    varied: &'a VariedCase<'a, W>,
     /// The place of the first variation among all.
     first: usize,
     sample: &'a Sample<W>,
     /// The point of the sample itself.
     point: FlightPoint,
     /// Of each variation; none where there is no derivative.
-    neighbours: Vec<Option<Neighbours>>,
+    moved_points: Vec<Option<MovedPoints>>,
 }
 
 /// The points to which the number of a variation leads.
-struct Neighbours {
+struct MovedPoints {
     /// Where it moves the state and the vehicle, if it does: the step, and the points of the differences.
     by_state: Option<(f64, [FlightPoint; 4])>,
     /// Where it moves the models, for each of its nodes.
@@ -163,19 +164,19 @@ const MOVED: f64 = 1e-5;
 /// Numbers of the vehicle that are smaller count as if they had this size, in their units.
 const LEAST_SIZE: f64 = 1e-3;
 
-impl<'a, const W: usize> Near<'a, W> {
-    fn new(flight: &'a Trajectory, varied: &'a Varied<'a, W>, first: usize, sample: &'a Sample<W>) -> Self {
+impl<'a, const W: usize> VariedSample<'a, W> {
+    fn new(flight: &'a Trajectory, varied: &'a VariedCase<'a, W>, first: usize, sample: &'a Sample<W>) -> Self {
         let Sample { time, state, phase, mode, .. } = sample;
         let phase = phase.map(|number| number.re);
         let mut forces = phase.forces(&flight.case);
         forces.enter(*mode);
         let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &state.map(|number| number.re));
-        let mut near = Self { flight, varied, first, sample, point, neighbours: Vec::new() };
-        near.neighbours = (0..varied.variations.len()).map(|variation| near.neighbours(variation)).collect();
+        let mut near = Self { flight, varied, first, sample, point, moved_points: Vec::new() };
+        near.moved_points = (0..varied.variations.len()).map(|variation| near.moved_points(variation)).collect();
         near
     }
 
-    fn neighbours(&self, variation: usize) -> Option<Neighbours> {
+    fn moved_points(&self, variation: usize) -> Option<MovedPoints> {
         let number = &self.varied.variations[variation];
         if number.changes_phases(&self.flight.case) {
             return None;
@@ -185,18 +186,18 @@ impl<'a, const W: usize> Near<'a, W> {
             .map(|step| (step, CENTRAL.map(|(times, _)| self.with_state_moved(variation, times * step))));
         let changes_forces = number.changes_forces_beside_vehicle(&self.flight.case);
         let of_node = |node: &Node| if changes_forces { self.with_models_moved(node) } else { self.point };
-        Some(Neighbours { by_state, by_models: number.nodes().iter().map(of_node).collect() })
+        Some(MovedPoints { by_state, by_models: number.nodes().iter().map(of_node).collect() })
     }
 
     /// The derivative of the output by a variation: by the way it moves the state and the vehicle, and by the models that it moves.
     fn slope(&self, output: &Output, variation: usize) -> f64 {
         let value = (output.value)(&self.point, None);
-        let (Some(value), Some(neighbours)) = (value, &self.neighbours[variation]) else { return f64::NAN };
+        let (Some(value), Some(moved_points)) = (value, &self.moved_points[variation]) else { return f64::NAN };
         let difference = |moved: Option<f64>| {
             let difference = moved.map_or(f64::NAN, |moved| moved - value);
             output.turn.map_or(difference, |turn| difference - turn * (difference / turn).round())
         };
-        let by_state = neighbours.by_state.as_ref().map_or(0.0, |(step, points)| {
+        let by_state = moved_points.by_state.as_ref().map_or(0.0, |(step, points)| {
             let weighted =
                 |((_, weight), point): (&(f64, f64), &FlightPoint)| weight * difference((output.value)(point, None));
             CENTRAL.iter().zip(points).map(weighted).sum::<f64>() / step
@@ -206,7 +207,7 @@ impl<'a, const W: usize> Near<'a, W> {
             node.weight * difference((output.value)(point, Some(moved)))
         };
         let nodes = self.varied.variations[variation].nodes();
-        by_state + nodes.iter().zip(&neighbours.by_models).map(of_node).sum::<f64>()
+        by_state + nodes.iter().zip(&moved_points.by_models).map(of_node).sum::<f64>()
     }
 
     /// The point where the number of a variation has moved the state, the vehicle, and the place from which the flight sets out, by an

@@ -144,14 +144,14 @@ impl ModelsOfFlight {
 
 /// A case of which up to `W` numbers vary.
 #[derive(Clone, Copy)]
-pub(super) struct Varied<'a, const W: usize> {
+pub(super) struct VariedCase<'a, const W: usize> {
     pub(super) case: &'a Case,
     pub(super) variations: &'a [Variation],
     /// The initial state, where its derivatives are known without the variations.
     pub(super) start: Option<PlanetFixed<Dual<W>>>,
 }
 
-impl<const W: usize> Varied<'_, W> {
+impl<const W: usize> VariedCase<'_, W> {
     /// A number with these derivatives.
     pub(super) fn dual(value: f64, slopes: [f64; W]) -> Dual<W> {
         if slopes.iter().all(|slope| *slope == 0.0) {
@@ -175,7 +175,7 @@ impl<const W: usize> Varied<'_, W> {
     }
 }
 
-impl<const W: usize> Numbers<Dual<W>> for Varied<'_, W> {
+impl<const W: usize> Numbers<Dual<W>> for VariedCase<'_, W> {
     fn case(&self) -> &Case {
         self.case
     }

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 use num_dual::Derivative;
 
-use super::variation::{Dual, Node, Varied};
+use super::variation::{Dual, Node, VariedCase};
 use crate::integrate::System;
 use crate::motion::{Forces, ModelMode, Switch};
 use crate::scenario::{FormulationIn, Phase};
@@ -27,7 +27,7 @@ struct ModelNode<T> {
 impl<const W: usize> VariedForces<W> {
     /// Those of a phase, with and without derivatives; `changes_models` says which variations do.
     pub(super) fn new(
-        varied: &Varied<'_, W>,
+        varied: &VariedCase<'_, W>,
         changes_models: &[bool],
         phase: &Phase<Dual<W>>,
         plain: &Phase,

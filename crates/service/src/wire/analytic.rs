@@ -15,7 +15,7 @@ use super::dispersions::Covariance;
 use super::reader::Fault;
 use super::scenario::{FlightRequest, RequestedOutput, SimulateRequest, case};
 use super::schema::names;
-use super::sensitivities::GivenSensitivities;
+use super::sensitivities::SensitivitiesAnswer;
 use super::state::Coordinates;
 use super::trajectory::RequestedAnalyses;
 use super::verification::Verification;
@@ -246,7 +246,7 @@ pub struct AnalyticResponse {
     /// The derivatives of the simulated flight's end, with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
-    pub sensitivities: Option<GivenSensitivities>,
+    pub sensitivities: Option<SensitivitiesAnswer>,
     /// How far the simulated flight's end scatters, to first order, with `dispersions`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]

@@ -15,6 +15,7 @@ use super::description::{Object, variant};
 use super::numbers::{Change, MOST_VARIED, Numbers, Varied, immovable};
 use super::outputs::{At, FlightOutput, ground_point};
 use super::reader::Fault;
+use super::sensitivities::finite;
 
 /// Numbers of a case that scatter together.
 #[derive(Clone, Debug)]
@@ -258,7 +259,7 @@ impl Covariance {
         let is_defined = landing.as_flattened().iter().all(|number| number.is_finite());
         let ellipse = is_defined.then(|| CoreEllipse::of(landing));
         let trace = landing[0][0] + landing[1][1];
-        let share = |part: f64, whole: f64| Some(part / whole).filter(|share| share.is_finite());
+        let share = |part: f64, whole: f64| finite(part / whole);
         let columns: Vec<_> = Dispersion::columns(known).map(|column| column.name).zip(2..).collect();
         let contribution = |(dispersion, part): (&Dispersion, &Vec<Vec<f64>>)| Contribution {
             pointers: dispersion.pointers.clone(),
@@ -271,7 +272,7 @@ impl Covariance {
                 })
                 .collect(),
         };
-        let deviation = |row: usize| Some(variance(row, row).sqrt()).filter(|number| number.is_finite());
+        let deviation = |row: usize| finite(variance(row, row).sqrt());
         Self {
             landing: Landing {
                 semi_major_axis: ellipse.map(|ellipse| ellipse.semi_major_axis),
@@ -294,8 +295,4 @@ fn rounding(column: &str, value: Option<f64>) -> f64 {
     // An altitude is a difference of radii.
     let least = if column.ends_with("altitude") { 1e3 } else { 0.0 };
     1e-8 * value.unwrap_or_default().abs().max(least)
-}
-
-fn finite(number: f64) -> Option<f64> {
-    Some(number).filter(|number| number.is_finite())
 }

@@ -15,8 +15,7 @@ use super::shown::shown;
 pub const MOST_VARIED: usize = 64;
 
 /// Parts of a request that are no part of its case: what they hold does not vary.
-const NO_PART_OF_THE_CASE: [&str; 6] =
-    ["/solver", "/output", "/angle_unit", "/sensitivities", "/dispersions", "/verify"];
+const OUTSIDE_THE_CASE: [&str; 6] = ["/solver", "/output", "/angle_unit", "/sensitivities", "/dispersions", "/verify"];
 
 /// A request whose numbers may vary.
 #[derive(Clone, Debug)]
@@ -82,7 +81,7 @@ impl Numbers {
     pub fn at(&self, pointer: &str) -> Result<Vec<&NumberField>, String> {
         let is_below =
             |part: &&&str| pointer.strip_prefix(**part).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
-        if let Some(part) = NO_PART_OF_THE_CASE.iter().find(is_below) {
+        if let Some(part) = OUTSIDE_THE_CASE.iter().find(is_below) {
             return Err(format!("must not point into {part}, which is no part of what flies"));
         }
         let found: Vec<_> = self.fields.iter().filter(|field| leads_to(pointer, field)).collect();

@@ -17,7 +17,7 @@ use super::heating::{Heating, heating};
 use super::numbers::{MOST_VARIED, Numbers};
 use super::planet::{Planet, planet};
 use super::reader::Fault;
-use super::sensitivities::{Asked, asked};
+use super::sensitivities::{RequestedSensitivities, asked};
 use super::shown::shown;
 use super::state::{State, inertial_conditions, state};
 use super::vehicle::vehicle;
@@ -31,7 +31,7 @@ pub struct SimulateRequest {
     pub name: Option<String>,
     pub angle_unit: AngleUnit,
     pub echo: bool,
-    pub sensitivities: Asked,
+    pub sensitivities: RequestedSensitivities,
     pub dispersions: Vec<Dispersion>,
     pub verify: bool,
     pub epoch: Option<Epoch>,
@@ -386,7 +386,7 @@ impl SimulateRequest {
         tree: &Value,
         faults: &mut Vec<Fault>,
     ) -> Result<Option<Numbers>, Vec<Fault>> {
-        if !matches!(self.sensitivities, Asked::Matrix { .. }) && self.dispersions.is_empty() {
+        if !matches!(self.sensitivities, RequestedSensitivities::Matrix { .. }) && self.dispersions.is_empty() {
             return Ok(None);
         }
         let mut tree = tree.clone();

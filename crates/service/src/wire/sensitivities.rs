@@ -16,11 +16,11 @@ use super::reader::Fault;
 
 /// Whether a request asks for derivatives, and for which.
 #[derive(Clone, Debug)]
-pub enum Asked {
+pub enum RequestedSensitivities {
     /// For none.
     Nothing,
     /// For those of the flight's end by a fixed list of numbers.
-    OfTheEnd,
+    FinalState,
     /// For those of outputs by numbers.
     Matrix {
         /// The outputs.
@@ -31,7 +31,7 @@ pub enum Asked {
 }
 
 const SENSITIVITIES: BooleanOrObject = BooleanOrObject {
-    name: "AskedSensitivities",
+    name: "RequestedSensitivities",
     doc: "Which derivatives of the flight the answer has.",
     boolean: "`true`: those of the flight's end by a fixed list of numbers, for the computing of about six flights.",
     object: "an object with outputs and numbers",
@@ -41,7 +41,7 @@ const SENSITIVITIES: BooleanOrObject = BooleanOrObject {
 const MOST_OUTPUTS: usize = 64;
 
 /// The field `sensitivities` of a request.
-pub(super) fn asked(object: &mut Object) -> Option<Asked> {
+pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
     object
         .field("sensitivities", "Sensitivities of the end")
         .doc(
@@ -49,10 +49,10 @@ pub(super) fn asked(object: &mut Object) -> Option<Asked> {
              or on a map.",
         )
         .default(false)
-        .boolean_or(&SENSITIVITIES, |asked| if asked { Asked::OfTheEnd } else { Asked::Nothing }, matrix)
+        .boolean_or(&SENSITIVITIES, |asked| if asked { RequestedSensitivities::FinalState } else { RequestedSensitivities::Nothing }, matrix)
 }
 
-fn matrix(object: &mut Object) -> Option<Asked> {
+fn matrix(object: &mut Object) -> Option<RequestedSensitivities> {
     object.named("SensitivityMatrix", "The derivatives of outputs by numbers of the case.");
     let of = object.field("of", "Of").doc("The outputs.").objects([1, MOST_OUTPUTS], output);
     let to = object
@@ -62,10 +62,10 @@ fn matrix(object: &mut Object) -> Option<Asked> {
              numbers.",
         )
         .texts(MOST_VARIED);
-    Some(Asked::Matrix { of: of?, to: to? })
+    Some(RequestedSensitivities::Matrix { of: of?, to: to? })
 }
 
-impl Asked {
+impl RequestedSensitivities {
     /// Whether there is anything asked for.
     pub fn is_something(&self) -> bool {
         !matches!(self, Self::Nothing)
@@ -138,9 +138,9 @@ pub struct VariedNumber {
 /// The derivatives for which a request asks.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
-pub enum GivenSensitivities {
+pub enum SensitivitiesAnswer {
     /// With `"sensitivities": true`.
-    OfTheEnd(Box<Sensitivities>),
+    FinalState(Box<Sensitivities>),
     /// With `of` and `to`.
     Matrix(Matrix),
 }
@@ -195,7 +195,6 @@ pub enum Method {
 impl Matrix {
     /// The matrix of a flight.
     pub fn new(outputs: &[OutputNumber], numbers: Vec<VariedNumber>, slopes: Vec<Slopes>, methods: &[Method]) -> Self {
-        let finite = |slope: f64| Some(slope).filter(|slope| slope.is_finite());
         let rows = outputs.iter().zip(&slopes);
         Self {
             of: rows
@@ -291,7 +290,6 @@ impl Sensitivities {
 impl Gradient {
     /// The derivatives of a quantity whose unit is `scale` times smaller than the core's.
     fn from_core(gradient: &CoreGradient, scale: f64, unit: AngleUnit) -> Self {
-        let finite = |slope: f64| Some(slope).filter(|slope| slope.is_finite());
         let by = |slope: f64| finite(slope * scale);
         let by_angle = |slope: f64| finite(unit.to_radians(slope * scale));
         let FlightPath { radius, longitude, geocentric_latitude, speed, flight_path_angle, heading } =
@@ -312,4 +310,9 @@ impl Gradient {
             heading: by_angle(heading),
         }
     }
+}
+
+/// A number of an answer: null where it is none.
+pub(super) fn finite(number: f64) -> Option<f64> {
+    Some(number).filter(|number| number.is_finite())
 }

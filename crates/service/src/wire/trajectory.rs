@@ -15,7 +15,7 @@ use super::dispersions::Covariance;
 use super::planet::MODELS;
 use super::scenario::{FORMULATIONS, FlightRequest};
 use super::schema::names;
-use super::sensitivities::GivenSensitivities;
+use super::sensitivities::SensitivitiesAnswer;
 use super::vehicle;
 use super::verification::Verification;
 use super::warning::Warning;
@@ -173,7 +173,7 @@ pub struct SolverReport {
 #[derive(Clone, Debug, Default)]
 pub struct RequestedAnalyses {
     /// With `sensitivities`.
-    pub sensitivities: Option<GivenSensitivities>,
+    pub sensitivities: Option<SensitivitiesAnswer>,
     /// With `dispersions`.
     pub covariance: Option<Covariance>,
     /// With `verify`.
@@ -224,7 +224,7 @@ pub struct SimulateResponse {
     /// The derivatives of the flight's end, with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
-    pub sensitivities: Option<GivenSensitivities>,
+    pub sensitivities: Option<SensitivitiesAnswer>,
     /// How far the flight's end scatters, to first order, with `dispersions`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]

@@ -182,7 +182,7 @@ function fieldOf(property: Property, schemaName: string, name: string): Field {
 /** The field of a schema with a name. */
 function referred(name: string, label: string, measured: { unit?: string; isAngle?: true }, place: string): Field {
   switch (name) {
-    case 'AskedSensitivities':
+    case 'RequestedSensitivities':
       return { kind: 'flag', label, orObject: true };
     case 'Command':
       return { kind: 'command', label };
