@@ -36,21 +36,23 @@ $(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
 	cd $(UI) && npm ci --no-audit --no-fund
 
 # The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped. What leaves a processor idle goes
-# beside something else: the program is linked while the tests are compiled, and the page is tried while requests are made up.
+# beside something else: the program is linked while the tests are compiled, and requests are made up while others wait.
 test: browser $(VENV)/ready ui ## Run all tests
 	$(MAKE) --jobs=2 build compiled-tests
 	cd $(UI) && npm test
 	cargo test --locked --workspace
-	$(PYTEST) tests/live --ignore tests/live/test_contract.py
-	$(MAKE) --jobs=2 contract e2e
+	$(MAKE) --jobs=2 contract live e2e
 
 # Each is a part of `make test`.
-.PHONY: compiled-tests contract e2e
+.PHONY: compiled-tests contract live e2e
 compiled-tests:
 	cargo test --locked --workspace --no-run
 
 contract:
 	$(PYTEST) tests/live/test_contract.py
+
+live:
+	$(PYTEST) tests/live --ignore tests/live/test_contract.py
 
 e2e:
 	cd $(UI) && REENTRY=$(abspath $(TARGET))/release/reentry CHROMIUM=$(abspath $(TARGET))/chromium/run npm run e2e
