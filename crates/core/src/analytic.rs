@@ -86,7 +86,7 @@ impl fmt::Display for End {
             Self::Vertical(equation) => write!(f, "cos γ of equation {equation} falls below 0"),
             Self::Pole(equation) => write!(f, "the denominator in equation {equation} reaches zero"),
             Self::Bracket => write!(f, "the bracket of equation 88 reaches zero"),
-            Self::Overflow => write!(f, "the numbers of the theory leave the range of floating-point numbers"),
+            Self::Overflow => write!(f, "a value of the theory exceeds the range of floating-point numbers"),
         }
     }
 }
@@ -101,40 +101,40 @@ const LEVEL: f64 = 16.0 * f64::EPSILON;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A glide without lift.
-    #[error("must not be 0: without lift there is no glide")]
+    #[error("must not be 0: the theory requires lift")]
     NoLift,
     /// A ballistic flight with lift.
-    #[error("must be 0: the ballistic theory knows no lift, got {}", NumberText(*.lift_coefficient))]
+    #[error("must be 0: the ballistic theory assumes no lift, got {}", NumberText(*.lift_coefficient))]
     Lift {
         /// `C_L`.
         lift_coefficient: f64,
     },
     /// No drag.
-    #[error("must be greater than 0: the theory measures altitude by drag (equation 76), got 0")]
+    #[error("must be greater than 0: the theory expresses altitude by drag (equation 76), got 0")]
     NoDrag,
     /// Nothing on which the air could act.
-    #[error("must be greater than 0: the theory is of lift and drag, got 0")]
+    #[error("must be greater than 0: the theory requires aerodynamic forces, got 0")]
     NoArea,
     /// No air.
-    #[error("must be greater than 0: the theory is of flight through air, got 0")]
+    #[error("must be greater than 0: the theory requires air, got 0")]
     NoAir,
     /// No air, by its factor.
-    #[error("must be greater than 0: the theory is of flight through air, got 0")]
+    #[error("must be greater than 0: the theory requires air, got 0")]
     NoDensity,
     /// Air without one scale height.
-    #[error("must be exponential: the theory knows one scale height")]
+    #[error("must be exponential: the theory assumes one scale height")]
     NotExponential,
     /// Coefficients that change during the flight.
-    #[error("must be constant or ballistic: the theory knows constant coefficients")]
+    #[error("must be constant or ballistic: the theory assumes constant coefficients")]
     NotConstant,
     /// A flight of several phases.
-    #[error("must be left out: the theory knows one vehicle, without thrust")]
+    #[error("must be omitted: the theory assumes one vehicle without thrust")]
     Events,
     /// The air at entry is thinner than any number.
-    #[error("the flight begins so high that the air has no density: the theory is of flight through air")]
+    #[error("the air has no density at the initial altitude: the theory requires air")]
     NoAirAtEntry,
     /// The flight does not descend at first.
-    #[error("the flight-path angle must be less than 0: the theory is of a descent")]
+    #[error("the flight-path angle must be less than 0: the theory requires a descent")]
     NoDescent {
         /// `γ_e`, rad.
         flight_path_angle: f64,

@@ -149,7 +149,7 @@ pub enum Fault {
         minimum: f64,
     },
     /// The position is the planet's centre, or nearer than a millimetre.
-    #[error("position is the planet's centre, where gravity has no direction")]
+    #[error("position must not be the planet's centre, where gravity has no direction")]
     AtCentre,
     /// The position is too far away.
     #[error("distance from the planet's centre must be at most {}", apart([Bound::RADIUS.maximum, *.distance]).join(" m, got "))]
@@ -178,19 +178,19 @@ pub enum Fault {
         field: Cow<'static, str>,
     },
     /// Time never falls.
-    #[error("is not for time, which never falls: use rises_through")]
+    #[error("must not be given for time, which never falls; use rises_through")]
     TimeFalls {
         /// The place of the condition in the [`Case`].
         field: String,
     },
     /// Propellant for a thrust that burns none.
-    #[error("must be left out: without a specific impulse the thrust burns no propellant")]
+    #[error("must be omitted: without a specific impulse the thrust consumes no propellant")]
     PropellantUnused {
         /// Its place in the [`Case`].
         field: String,
     },
     /// A parachute that is never deployed.
-    #[error("must be the number of an event that deploys a parachute, got {event}")]
+    #[error("must be the index of an event that deploys a parachute, got {event}")]
     NoParachute {
         /// Its place in the [`Case`].
         field: String,
@@ -206,14 +206,15 @@ pub enum Fault {
         altitude: f64,
     },
     /// A condition on the heating where none is asked for.
-    #[error("needs heating, which the case does not ask for")]
+    #[error("requires heating, which the case does not have")]
     NoHeating {
         /// The place of the condition in the [`Case`].
         field: String,
     },
     /// A condition on the downrange of a flight that starts vertically or at rest.
     #[error(
-        "needs an initial heading, which a flight that starts vertically or at rest does not have; use ground_range"
+        "requires an initial heading, which a flight that starts vertically or at rest does not have; use \
+         ground_range"
     )]
     NoHeading {
         /// The place of the condition in the [`Case`].
@@ -226,7 +227,7 @@ pub enum Fault {
         field: String,
     },
     /// Something waits for an event that never happens.
-    #[error("must not be an event that waits, by way of others or at once, for itself: it would never happen")]
+    #[error("must not be an event that waits for itself, directly or through others: it would never happen")]
     NeverHappens {
         /// Its place in the [`Case`].
         field: String,
@@ -246,7 +247,7 @@ fn odd_shape(equatorial_radius: f64, polar_radius: f64) -> String {
 
 /// Everything that is wrong with a case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the case cannot be flown: {}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+#[error("the case is not valid: {}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
 pub struct ScenarioError(pub Vec<Fault>);
 
 /// An altitude this near the stop altitude, m, counts as on it.

@@ -25,7 +25,7 @@ use step_view::StepView;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The limit on the number of steps was reached.
-    #[error("the flight took more than {limit} integration steps; it got to t = {} s", NumberText(*.time))]
+    #[error("the flight needs more than {limit} integration steps; it reached t = {} s", NumberText(*.time))]
     StepLimit {
         /// The instant reached, s.
         time: f64,
@@ -41,7 +41,7 @@ pub enum SimulationError {
         at: Singularity,
     },
     /// No step that advances the time meets the tolerance.
-    #[error("the motion changes too fast to be followed at t = {} s", NumberText(*.time))]
+    #[error("the motion changes too fast to be integrated at t = {} s", NumberText(*.time))]
     TooStiff {
         /// The instant reached, s.
         time: f64,
@@ -54,7 +54,7 @@ pub enum SimulationError {
     },
     /// On either side of a boundary the motion leads back across it.
     #[error(
-        "{} switches back and forth from t = {} s on: on either side of one of its entries the flight is led back to it",
+        "{} switches back and forth from t = {} s on: the flight returns to one of its entries from both sides",
         name(*.switch), NumberText(*.time)
     )]
     Chatter {
@@ -64,7 +64,7 @@ pub enum SimulationError {
         switch: Switch,
     },
     /// The thrust has burnt the vehicle up.
-    #[error("by t = {} s the thrust has burnt all the mass that there was", NumberText(*.time))]
+    #[error("the thrust has burnt the entire mass by t = {} s", NumberText(*.time))]
     NothingLeft {
         /// The instant reached, s.
         time: f64,
@@ -83,7 +83,7 @@ pub enum SimulationError {
         altitude: f64,
     },
     /// The steps that the flight keeps have no room in memory.
-    #[error("no room in memory for the steps after t = {} s", NumberText(*.time))]
+    #[error("no memory for the steps after t = {} s", NumberText(*.time))]
     NoRoom {
         /// The instant reached, s.
         time: f64,

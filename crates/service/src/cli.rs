@@ -24,7 +24,7 @@ use crate::format::Format;
 use crate::router::document;
 use crate::wire::shown::printable;
 
-/// Flies vehicles back through the atmosphere.
+/// Simulates atmospheric entry: trajectories, landing points, loads and heating.
 #[derive(Debug, Parser)]
 #[command(name = "reentry", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
@@ -36,62 +36,62 @@ pub struct Cli {
 /// What the program can do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the web service until SIGTERM, SIGINT or SIGQUIT; every flag can be set by its environment variable as well
+    /// Run the web service until SIGTERM, SIGINT or SIGQUIT; each flag can also be set by its environment variable
     Serve(Box<Config>),
-    /// Fly a case, or each of a list of cases: the JSON of POST /simulate
+    /// Simulate one case or a list of cases: the JSON of POST /simulate
     #[command(after_help = [SIMULATE_EXAMPLES, EXIT_CODES].concat())]
     Simulate {
         /// The cases.
         #[command(flatten)]
         cases: Cases,
 
-        /// What is written
+        /// Output format
         #[arg(long, short, value_parser = Format::offered(&Format::OF_FLIGHTS), default_value = "json")]
         format: Format,
     },
-    /// Set a closed-form theory beside a flight, or beside each of a list: the JSON of POST /analytic
+    /// Compare a closed-form theory with the simulated flight, for one case or a list: the JSON of POST /analytic
     #[command(after_help = [ANALYTIC_EXAMPLES, EXIT_CODES].concat())]
     Analytic {
         /// The cases.
         #[command(flatten)]
         cases: Cases,
 
-        /// What is written
+        /// Output format
         #[arg(long, short, value_parser = Format::offered(&Format::OF_THEORIES), default_value = "json")]
         format: Format,
     },
-    /// Write a state in every coordinate system, or each of a list of states: the JSON of POST /convert
+    /// Convert one state or a list of states to all coordinate systems: the JSON of POST /convert
     #[command(after_help = [CONVERT_EXAMPLES, EXIT_CODES].concat())]
     Convert {
         /// The states.
         #[command(flatten)]
         states: States,
 
-        /// What is written; a state is no table and comes as JSON alone
+        /// Output format; a state is available only as JSON
         #[arg(long, short, value_parser = ["json"], default_value = "json")]
         format: String,
     },
-    /// Fly every reference case that is built in, and print what is expected and what comes out: the JSON of GET /validation
+    /// Run the built-in reference cases and print expected and computed values: the JSON of GET /validation
     #[command(after_help = [VALIDATE_EXAMPLES, EXIT_CODES].concat())]
     Validate(Validate),
-    /// Ask the service of this machine whether it runs, for containers that have no other program to ask with
+    /// Check whether the service on this machine is running; for containers without another HTTP client
     Healthcheck(Healthcheck),
     /// Print the OpenAPI document
     Openapi,
-    /// Print what a shell needs to complete commands and flags
+    /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
-        /// The shell
+        /// Shell
         shell: Shell,
     },
 }
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  all went well
-  1  a case failed: it is not valid, cannot be flown to its end, or, a reference case, came out otherwise than expected; or the
-     service cannot listen or does not answer
-  2  the command line is wrong
+  0  success
+  1  a case failed (it is not valid, its flight cannot be completed, or a reference case differs from the expected result), or
+     the service cannot listen or does not answer
+  2  the command line or a setting is not valid
   3  a file cannot be read or written, or standard output is closed
 ";
 
@@ -108,9 +108,9 @@ const SIMULATE_EXAMPLES: &str = r#"Examples:
      "speed": 7500, "flight_path_angle": -3, "heading": 30}}
   END
 
-A list of cases, a JSON array, gives a line of JSON a case, in order. A case that fails has its problem document there and on
-standard error, and the others fly all the same. With --format csv a list gives one table, whose first column, case, counts from 0,
-with geojson and czml a map a line; kml takes one case alone.
+A list of cases, a JSON array, gives one line of JSON per case, in order. A failed case is reported on standard error and its line
+holds the problem document; the others still run. With --format csv, a list gives one table whose first column, case, counts from 0.
+With geojson and czml, it gives one map per line. kml accepts only a single case.
 
 "#;
 
@@ -118,7 +118,7 @@ const ANALYTIC_EXAMPLES: &str = r#"Examples:
   reentry analytic case.json --format csv
   jq '.solution = "steep_ballistic"' case.json | reentry analytic - | jq .valid
 
-A case has a solution: shallow_glide, loh, steep_glide, steep_ballistic or medium_glide.
+The field solution of a case names the theory: shallow_glide, loh, steep_glide, steep_ballistic or medium_glide.
 
 "#;
 
@@ -134,7 +134,8 @@ Examples:
   reentry validate --format json | jq .passed
   reentry validate --format markdown > validation.md
 
-Flights that were flown depend on more than was published of them: their differences are told and are no failure.
+Comparisons with real flights are informational: published data do not determine them fully, so their differences are reported
+but never fail.
 
 ";
 
@@ -162,7 +163,7 @@ pub enum Failure {
         error: io::Error,
     },
     /// A setting is not sound beside the others, or not at all.
-    #[error("{0}; reentry serve --help tells of all settings")]
+    #[error("{0}; see reentry serve --help")]
     Setting(String),
     /// The service cannot run, or does not answer.
     #[error(transparent)]

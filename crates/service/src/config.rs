@@ -12,93 +12,99 @@ use tracing_subscriber::EnvFilter;
 /// Settings of `reentry serve`.
 #[derive(Args, Clone, Debug)]
 pub struct Config {
-    /// Address and port to listen on; 0.0.0.0:8080 answers other machines, port 0 takes a free one
+    /// Address and port to listen on; 0.0.0.0:8080 accepts connections from other machines, port 0 selects a free port
     #[arg(long, env = "REENTRY_LISTEN", default_value = "127.0.0.1:8080")]
     pub listen: SocketAddr,
 
-    /// Threads that compute; 0 takes as many as there are processors
+    /// Number of threads that compute; 0 uses one per processor
     #[arg(long, env = "REENTRY_WORKERS", default_value_t = 0, value_parser = up_to(1024))]
     pub workers: usize,
 
-    /// Requests that may wait for a worker, and as many again that give way to shorter ones; one more is refused with 503
+    /// Maximum number of requests that wait for a worker, and as many again that yield to shorter ones; further
+    /// requests are refused with 503
     #[arg(long, env = "REENTRY_QUEUE", default_value_t = 64, value_parser = up_to(1 << 20))]
     pub queue: usize,
 
-    /// Seconds that a job may take, waiting included, before 504 is answered, and that its body may take before 408
+    /// Time limit of a request in seconds, waiting included (504), and of receiving its body (408)
     #[arg(long, env = "REENTRY_DEADLINE", default_value = "10", value_parser = seconds)]
     pub deadline: Duration,
 
-    /// Bytes that the body of a request may have; a longer one is refused with 413
+    /// Maximum size of a request body in bytes; a larger body is refused with 413
     #[arg(long, env = "REENTRY_BODY_LIMIT", default_value_t = 1 << 20)]
     pub body_limit: usize,
 
-    /// Batches that may compute at once, half of them of one client; one more is refused with 503 or 429
+    /// Maximum number of batches that compute at once, half of them from one client; further batches are refused with
+    /// 503 or 429
     #[arg(long, env = "REENTRY_BATCHES", default_value_t = 16, value_parser = up_to(1 << 20))]
     pub batches: usize,
 
-    /// Seconds that a batch may take in all; 504 is then the answer of the cases that are left
+    /// Time limit of a batch in seconds; the remaining cases then fail with 504
     #[arg(long, env = "REENTRY_BATCH_DEADLINE", default_value = "60", value_parser = seconds)]
     pub batch_deadline: Duration,
 
-    /// Bytes that the body of a batch may have; a longer one is refused with 413
+    /// Maximum size of the body of a batch in bytes; a larger body is refused with 413
     #[arg(long, env = "REENTRY_BATCH_BODY_LIMIT", default_value_t = 8 << 20)]
     pub batch_body_limit: usize,
 
-    /// Rows that a trajectory may have; more are refused with 422
+    /// Maximum number of rows of a trajectory; requests for more are refused with 422
     #[arg(long, env = "REENTRY_ROW_LIMIT", default_value_t = 100_000, value_parser = up_to(MOST_ROWS))]
     pub row_limit: usize,
 
-    /// Bytes from which an answer is compressed, if the client accepts that
+    /// Size in bytes from which a response is compressed, if the client accepts it
     #[arg(long, env = "REENTRY_COMPRESS_ABOVE", default_value_t = 16_384)]
     pub compress_above: u64,
 
-    /// Bytes that bodies and answers may have: bodies of batches an eighth, others a sixteenth, answers the rest; one client half of each.
-    /// More is refused with 503, or with 429 where others find room
+    /// Memory for bodies and responses in bytes: one eighth for bodies of batches, one sixteenth for other bodies, the
+    /// rest for responses; one client may use half of each. Requests that need more are refused with 503, or with 429
+    /// if other clients still have room
     #[arg(long, env = "REENTRY_MEMORY", default_value_t = 256 << 20)]
     pub memory: usize,
 
-    /// Connections that may be open at once, as far as the system allows so many files; more wait to be accepted
+    /// Maximum number of open connections, as far as the system allows that many open files; further connections wait
     #[arg(long, env = "REENTRY_CONNECTIONS", default_value_t = 16_384, value_parser = at_least_one)]
     pub connections: usize,
 
-    /// Seconds that a connection may be idle, send the head of a request, or leave an answer untaken before it is closed
+    /// Seconds that a connection may be idle, take to send a request head, or leave a response unread before it is
+    /// closed
     #[arg(long, env = "REENTRY_IDLE", default_value = "30", value_parser = seconds)]
     pub idle: Duration,
 
-    /// Seconds that requests may go on after SIGTERM, SIGINT or SIGQUIT
+    /// Seconds that running requests may continue after SIGTERM, SIGINT or SIGQUIT
     #[arg(long, env = "REENTRY_GRACE", default_value = "20", value_parser = seconds)]
     pub grace: Duration,
 
-    /// Requests a second that one client may send on average, where 10 ms of computing count as one; more are refused with 429. No limit by
-    /// default
+    /// Requests per second that one client may send on average; 10 ms of computing count as one request. Further
+    /// requests are refused with 429. No limit by default
     #[arg(long, env = "REENTRY_RATE_LIMIT", value_name = "RATE", value_parser = rate)]
     pub rate_limit: Option<f64>,
 
-    /// Requests that a client that has been silent may send at once, under a rate limit
+    /// Requests that an idle client may send at once, under a rate limit
     #[arg(long, env = "REENTRY_RATE_BURST", default_value = "20")]
     pub rate_burst: NonZeroU32,
 
-    /// Networks of the proxies whose word on the client's address is taken, as `10.0.0.0/8,::1/128`
+    /// Proxy networks trusted to report the client's address, for example `10.0.0.0/8,::1/128`
     #[arg(long, env = "REENTRY_TRUSTED_PROXIES", value_name = "NETWORKS", value_delimiter = ',', value_parser = network)]
     pub trusted_proxies: Vec<IpNet>,
 
-    /// Header in which trusted proxies give the client's address
+    /// Header in which trusted proxies report the client's address
     #[arg(long, env = "REENTRY_FORWARDED_HEADER", value_enum, default_value_t = ForwardedHeader::XForwardedFor)]
     pub forwarded_header: ForwardedHeader,
 
-    /// Origins whose pages may ask from a browser, as `https://planner.example`; `*` is all, `none` is none
+    /// Origins whose pages may call the API from a browser, for example `https://planner.example`; `*` allows all,
+    /// `none` allows none
     #[arg(long, env = "REENTRY_CORS_ORIGINS", value_name = "ORIGINS", default_value = "*", value_parser = origins)]
     pub cors_origins: Origins,
 
-    /// Address and port for `GET /metrics`, which the other address then does not answer
+    /// Address and port for `GET /metrics`; the main address then does not serve it
     #[arg(long, env = "REENTRY_METRICS_LISTEN", value_name = "ADDRESS")]
     pub metrics_listen: Option<SocketAddr>,
 
-    /// What is logged: error, warn, info, debug or trace, for all or by module, as `warn,reentry_service=debug`
+    /// Log levels: error, warn, info, debug or trace, for all modules or per module, for example
+    /// `warn,reentry_service=debug`
     #[arg(long, env = "RUST_LOG", value_name = "LEVELS", default_value = "info", value_parser = levels)]
     pub log: String,
 
-    /// Form of the log lines on standard error
+    /// Format of the log lines on standard error
     #[arg(long, env = "REENTRY_LOG_FORMAT", value_enum, default_value_t = LogFormat::Text)]
     pub log_format: LogFormat,
 }
@@ -115,16 +121,16 @@ pub const BODIES: usize = 16;
 /// How a log line looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LogFormat {
-    /// For people
+    /// Text, for people
     Text,
-    /// For programs, one object a line
+    /// JSON, one object per line
     Json,
 }
 
 /// Where proxies give the address of the client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ForwardedHeader {
-    /// X-Forwarded-For, which most proxies write
+    /// X-Forwarded-For, used by most proxies
     XForwardedFor,
     /// Forwarded, of RFC 7239
     Forwarded,
@@ -149,12 +155,12 @@ impl Config {
         if self.memory < least {
             let memory = self.memory;
             return Err(format!(
-                "--memory, {memory} bytes, must be at least {BODIES} times --body-limit and {BATCH_BODIES} times --batch-body-limit, \
-                 {least} bytes"
+                "--memory must be at least {least} bytes, {BODIES} times --body-limit and {BATCH_BODIES} times \
+                 --batch-body-limit, got {memory}"
             ));
         }
         if self.metrics_listen == Some(self.listen) && self.listen.port() != 0 {
-            return Err("--metrics-listen must be another address than --listen".to_owned());
+            return Err("--metrics-listen must differ from --listen".to_owned());
         }
         Ok(())
     }
@@ -232,14 +238,17 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (1e-3..=1e6).contains(&rate) => Ok(rate),
-        _ => Err("must be a number of requests a second, from 0.001 to 1000000".to_owned()),
+        _ => Err("must be a number of requests per second, from 0.001 to 1000000".to_owned()),
     }
 }
 
 /// A network, or a single address.
 fn network(text: &str) -> Result<IpNet, String> {
     let address = || text.parse().map(|address: IpAddr| IpNet::from(address)).ok();
-    text.parse().ok().or_else(address).ok_or_else(|| "must be a network, as 10.0.0.0/8, or an address".to_owned())
+    text.parse()
+        .ok()
+        .or_else(address)
+        .ok_or_else(|| "must be a network, for example 10.0.0.0/8, or an address".to_owned())
 }
 
 /// Levels of the log.
@@ -259,7 +268,8 @@ fn origins(text: &str) -> Result<Origins, String> {
 fn origin(text: &str) -> Result<HeaderValue, String> {
     let fault = || {
         format!(
-            "{text:?} must be a scheme and a host, with a port where it is not the scheme's own, as https://planner.example"
+            "{text:?} must be a scheme and a host, with the port if it is not the scheme's default, for example \
+             https://planner.example"
         )
     };
     let uri: Uri = text.parse().map_err(|_| fault())?;

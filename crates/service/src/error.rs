@@ -27,36 +27,34 @@ pub enum ApiError {
     #[error("{0}")]
     MalformedRequest(&'static str),
     /// The target of the request is too long.
-    #[error("the path and the query are longer than a request may have them")]
+    #[error("the path and query string are too long")]
     UriTooLong,
     /// The head of the request is too long.
-    #[error("the head of the request is longer than 16384 bytes, or has more than 100 fields")]
+    #[error("the request head exceeds 16384 bytes or 100 header fields")]
     HeadTooLarge,
     /// The body ended early.
     #[error("the body could not be read: {0}")]
     UnreadableBody(String),
     /// The body did not come in time.
-    #[error("the body did not come within {seconds} s")]
+    #[error("the body did not arrive within {seconds} s")]
     BodyTimeout {
         /// The time allowed, s.
         seconds: f64,
     },
     /// The body came too slowly while there was little memory.
-    #[error(
-        "the body came more slowly than {least} bytes a second, which is too slow while the service has little memory left"
-    )]
+    #[error("the body arrived at less than {least} bytes per second, the minimum while the service is low on memory")]
     BodyTooSlow {
         /// The slowest that is waited for, bytes a second.
         least: usize,
     },
     /// There is nothing at this path.
-    #[error("there is nothing at {0}; see /docs")]
+    #[error("no resource at {0}; see /docs")]
     NotFound(String),
     /// The path does not know the method.
-    #[error("{0} does not answer to this method; see /docs")]
+    #[error("{0} does not support this method; see /docs")]
     MethodNotAllowed(String),
     /// None of the representations that the client accepts.
-    #[error("this answer comes as {offered}, not as {asked:?}")]
+    #[error("the response is available as {offered}, not as {asked:?}")]
     NotAcceptable {
         /// What there is.
         offered: String,
@@ -64,24 +62,22 @@ pub enum ApiError {
         asked: String,
     },
     /// The body is too long.
-    #[error("the body is longer than the {limit} bytes allowed")]
+    #[error("the body exceeds the limit of {limit} bytes")]
     PayloadTooLarge {
         /// The limit, bytes.
         limit: usize,
     },
     /// The body is not declared as JSON.
-    #[error(
-        "the body must be declared as application/json, not as {0}; with curl: -H 'content-type: application/json'"
-    )]
+    #[error("content-type must be application/json, got {0}; with curl: -H 'content-type: application/json'")]
     UnsupportedMediaType(String),
     /// The body is in a coding that is not taken.
-    #[error("the body must be coded by gzip or zstd, or not at all, not by {0}")]
+    #[error("content-encoding must be gzip, zstd or absent, got {0}")]
     UnsupportedCoding(String),
     /// The request is JSON, but not a valid case.
-    #[error("the request has {}", counted(.0))]
+    #[error("{} in the request", counted(.0))]
     Invalid(Vec<Fault>),
     /// More rows than allowed.
-    #[error("the trajectory would have more than the {limit} rows allowed")]
+    #[error("the trajectory exceeds the limit of {limit} rows")]
     TooManyRows {
         /// The limit.
         limit: usize,
@@ -89,56 +85,56 @@ pub enum ApiError {
         pointer: &'static str,
     },
     /// An answer that does not fit into the memory for answers.
-    #[error("the answer would take more than the {limit} bytes of memory that one may take; ask for fewer rows")]
+    #[error("the response exceeds the limit of {limit} bytes of memory; request fewer rows")]
     TooLarge {
         /// The limit, bytes.
         limit: usize,
     },
     /// More rows than there is memory for.
-    #[error("the trajectory would have {rows} rows, and there is no memory for so many")]
+    #[error("the trajectory has {rows} rows, too many for the available memory")]
     NoMemory {
         /// So many.
         rows: u64,
     },
     /// The flight cannot be finished.
-    #[error("the flight cannot be finished: {0}")]
+    #[error("the flight cannot be completed: {0}")]
     Flight(#[from] SimulationError),
     /// The client has sent more requests than it may, or holds as much as it may.
-    #[error("this client may send no more requests now; try again in {seconds} s")]
+    #[error("this client has reached its request limit; try again in {seconds} s")]
     TooManyRequests {
         /// Until the next is answered, s.
         seconds: u64,
     },
     /// All workers are busy and the queue is full, or the memory is.
-    #[error("the service is busy; try again in a second")]
+    #[error("the service is busy; try again in 1 s")]
     Busy,
     /// The time allowed ran out.
-    #[error("the request took longer than the {seconds} s allowed")]
+    #[error("the request exceeded the time limit of {seconds} s")]
     DeadlineExceeded {
         /// The time allowed, s.
         seconds: f64,
     },
     /// Nobody waits for the answer any more.
-    #[error("the request was given up")]
+    #[error("the request was cancelled")]
     Interrupted,
     /// A fault of the service.
-    #[error("the service failed on this request; its x-request-id finds it in the log")]
+    #[error("the service failed on this request; find its x-request-id in the log")]
     Internal,
 }
 
-/// A problem document (RFC 9457).
+/// Problem document (RFC 9457).
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Problem {
-    /// The kind of problem: a path that stays the same.
+    /// Type of the problem: a stable path.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// The kind of problem, for people.
+    /// Type of the problem, for people.
     pub title: &'static str,
-    /// The HTTP status.
+    /// HTTP status code.
     pub status: u16,
-    /// This problem, for people.
+    /// Explanation of this problem, for people.
     pub detail: String,
-    /// The fields that are at fault: the first 100. Where there are more, a last entry without a pointer says so.
+    /// Fields with problems, at most 100. If there are more, a last entry without a pointer says so.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub errors: Vec<FieldError>,
@@ -151,12 +147,12 @@ impl Problem {
     }
 }
 
-/// What is wrong with one field.
+/// Problem with one field.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct FieldError {
-    /// The field, as a JSON pointer (RFC 6901).
+    /// JSON pointer of the field (RFC 6901).
     pub pointer: String,
-    /// What is wrong, and what would be right.
+    /// Explanation of the problem, with the valid values.
     pub detail: String,
 }
 
@@ -179,7 +175,7 @@ impl ApiError {
             Self::MalformedRequest(_) => (Status::BAD_REQUEST, "/problems/malformed-request", "Malformed request"),
             Self::UriTooLong => (Status::URI_TOO_LONG, "/problems/uri-too-long", "Path too long"),
             Self::HeadTooLarge => {
-                (Status::REQUEST_HEADER_FIELDS_TOO_LARGE, "/problems/head-too-large", "Head of the request too large")
+                (Status::REQUEST_HEADER_FIELDS_TOO_LARGE, "/problems/head-too-large", "Request head too large")
             }
             Self::UnreadableBody(_) => (Status::BAD_REQUEST, "/problems/unreadable-body", "Unreadable body"),
             Self::BodyTimeout { .. } | Self::BodyTooSlow { .. } => {
@@ -199,7 +195,7 @@ impl ApiError {
             Self::UnsupportedCoding(_) => {
                 (Status::UNSUPPORTED_MEDIA_TYPE, "/problems/unsupported-coding", "Unsupported content coding")
             }
-            Self::Invalid(_) => (Status::UNPROCESSABLE_ENTITY, "/problems/invalid-case", "Not a valid case"),
+            Self::Invalid(_) => (Status::UNPROCESSABLE_ENTITY, "/problems/invalid-case", "Case not valid"),
             Self::TooManyRows { .. } | Self::NoMemory { .. } => {
                 (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows")
             }
@@ -209,22 +205,22 @@ impl ApiError {
                 Singularity { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/singularity", "Singular equations"),
                 TooStiff { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-size", "Too stiff to integrate"),
                 Chatter { .. } => {
-                    (Status::UNPROCESSABLE_ENTITY, "/problems/chattering-schedule", "Schedule undoes itself")
+                    (Status::UNPROCESSABLE_ENTITY, "/problems/chattering-schedule", "Chattering schedule")
                 }
                 NothingLeft { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/no-mass-left", "No mass left"),
                 NoDirection { .. } => {
-                    (Status::UNPROCESSABLE_ENTITY, "/problems/no-direction", "Thrust without a direction")
+                    (Status::UNPROCESSABLE_ENTITY, "/problems/no-direction", "Thrust without direction")
                 }
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
                 NoRoom { .. } => (Status::SERVICE_UNAVAILABLE, "/problems/busy", "Busy"),
-                Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time"),
+                Interrupted { .. } => (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Time limit exceeded"),
             },
             Self::TooManyRequests { .. } => {
                 (Status::TOO_MANY_REQUESTS, "/problems/too-many-requests", "Too many requests")
             }
             Self::Busy => (Status::SERVICE_UNAVAILABLE, "/problems/busy", "Busy"),
             Self::DeadlineExceeded { .. } | Self::Interrupted => {
-                (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Out of time")
+                (Status::GATEWAY_TIMEOUT, "/problems/deadline-exceeded", "Time limit exceeded")
             }
             Self::Internal => (Status::INTERNAL_SERVER_ERROR, "/problems/internal", "Internal error"),
         }
@@ -236,33 +232,31 @@ impl ApiError {
         match self {
             Self::Invalid(faults) => {
                 let told = faults.iter().take(MOST_FAULTS).cloned();
-                let rest = || Fault::new("", format!("there are more faults than these {MOST_FAULTS}"));
+                let rest = || Fault::new("", format!("more than {MOST_FAULTS} problems; the others are not listed"));
                 let rest = (faults.len() > MOST_FAULTS).then(rest);
                 told.chain(rest).map(|Fault { pointer, detail }| FieldError { pointer, detail }).collect()
             }
-            Self::TooManyRows { limit, pointer } => one(
-                pointer,
-                format!("would give more than the {limit} rows allowed; ask for fewer, for example with count"),
-            ),
+            Self::TooManyRows { limit, pointer } => {
+                one(pointer, format!("gives more than {limit} rows; request fewer, for example with count"))
+            }
             Self::NoMemory { rows } => one(
                 "/output",
-                format!("gives {rows} rows, more than there is memory for; ask for fewer, for example with count"),
+                format!("gives {rows} rows, too many for the available memory; request fewer, for example with count"),
             ),
             Self::Flight(SimulationError::Singularity { .. }) => {
                 one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
             }
             Self::Flight(SimulationError::NothingLeft { .. }) => {
-                one("/events", "switch the thrust off by an event, or say how much propellant there is".to_owned())
+                one("/events", "switch the thrust off with an event, or set its propellant".to_owned())
             }
             Self::Flight(SimulationError::NoDirection { event, .. }) => one(
                 &format!("/events/{event}/then/thrust/along"),
-                "switch the thrust off or end the flight before the vehicle is at rest or there, for example where the speed falls through \
-                 0; or give a direction that there is at rest, \"radial\" or an inertial one"
+                "switch the thrust off or end the flight when the vehicle comes to rest or before, for example where \
+                 the speed falls through 0; or use a direction that is defined at rest, \"radial\" or an inertial one"
                     .to_owned(),
             ),
             Self::Flight(SimulationError::Chatter { switch, .. }) => {
-                let advice =
-                    "let the angle change along a line (\"interpolation\": \"linear\"), or against another quantity";
+                let advice = "use \"interpolation\": \"linear\", or another quantity in \"against\"";
                 match switch {
                     Switch::BankAngle => one("/control/bank_angle", advice.to_owned()),
                     Switch::AngleOfAttack => one("/control/angle_of_attack", advice.to_owned()),
@@ -286,9 +280,9 @@ impl From<Refusal> for ApiError {
 /// How many faults there are, as far as they were counted.
 fn counted(faults: &[Fault]) -> String {
     match faults.len() {
-        1 => "1 fault".to_owned(),
-        count if count <= MOST_FAULTS => format!("{count} faults"),
-        _ => format!("more than {MOST_FAULTS} faults"),
+        1 => "1 problem".to_owned(),
+        count if count <= MOST_FAULTS => format!("{count} problems"),
+        _ => format!("more than {MOST_FAULTS} problems"),
     }
 }
 

@@ -11,15 +11,15 @@ use crate::error::ApiError;
 /// A representation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// The whole answer, application/json
+    /// Complete response, application/json
     Json,
-    /// The trajectory alone as a table, text/csv
+    /// Trajectory as a table, text/csv
     Csv,
-    /// The track on a map, application/geo+json
+    /// Track on a map, application/geo+json
     Geojson,
-    /// The track for Google Earth, application/vnd.google-earth.kml+xml
+    /// Track for Google Earth, application/vnd.google-earth.kml+xml
     Kml,
-    /// The track for Cesium, application/czml+json
+    /// Track for Cesium, application/czml+json
     Czml,
     /// A line of JSON for each case of a batch, application/x-ndjson
     #[value(skip)]
@@ -81,7 +81,7 @@ impl Format {
             [(name, value)] if name == "format" => {
                 offered.iter().copied().find(|format| format.name() == value).ok_or_else(|| not_acceptable(value))
             }
-            _ => Err(ApiError::BadQuery("the query string may have one parameter, format".to_owned())),
+            _ => Err(ApiError::BadQuery("the query string may contain only one parameter, format".to_owned())),
         }
     }
 }

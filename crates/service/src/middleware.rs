@@ -163,15 +163,15 @@ pub async fn check_head(request: Request, next: Next) -> Response {
     let mut hosts = request.headers().get_all(header::HOST).iter();
     let mut codings = request.headers().get_all(header::TRANSFER_ENCODING).iter();
     let wrong_host = match (hosts.next(), hosts.next()) {
-        (Some(_), Some(_)) => Some("the request must have one Host, not several"),
+        (Some(_), Some(_)) => Some("the request must have exactly one Host header"),
         (Some(host), None) if !host.is_empty() && Authority::try_from(host.as_bytes()).is_err() => {
-            Some("Host must be a name or an address, with a port or without")
+            Some("Host must be a name or an address, with an optional port")
         }
-        (None, _) if request.version() > Version::HTTP_10 => Some("the request must have a Host"),
+        (None, _) if request.version() > Version::HTTP_10 => Some("the request must have a Host header"),
         _ => None,
     };
     let is_chunked = codings.all(|coding| coding.as_bytes().eq_ignore_ascii_case(b"chunked"));
-    let wrong_coding = (!is_chunked).then_some("the only Transfer-Encoding that is taken is chunked");
+    let wrong_coding = (!is_chunked).then_some("Transfer-Encoding must be chunked");
     match wrong_host.or(wrong_coding) {
         Some(wrong) if request.extensions().get::<Peer>().is_some() => {
             ApiError::MalformedRequest(wrong).into_response()
@@ -185,7 +185,7 @@ pub fn refuse_head(app: &AppState, peer: SocketAddr, status: StatusCode) -> Vec<
     let error = match status {
         StatusCode::URI_TOO_LONG => ApiError::UriTooLong,
         StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE => ApiError::HeadTooLarge,
-        _ => ApiError::MalformedRequest("the head of the request is not HTTP/1.1"),
+        _ => ApiError::MalformedRequest("the request head is not HTTP/1.1"),
     };
     let (id, body) = (new_id(), error.problem().to_json());
     app.metrics.request_begun(OTHER);

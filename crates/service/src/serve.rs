@@ -55,12 +55,12 @@ pub async fn serve(
     let grace = state.config.grace;
     let acceptor = Acceptor::new(app(state.clone()), state.clone(), connections(state.config.connections));
     acceptor.accept(&listener, shutdown).await;
-    tracing::info!("going down: finishing what runs");
+    tracing::info!("shutting down: finishing requests in progress");
     state.drain();
     acceptor.accept_those_who_wait(&listener);
     drop(listener);
     if timeout(grace, acceptor.close()).await.is_err() {
-        tracing::warn!("requests were still running at the end of the grace");
+        tracing::warn!("requests were still running at the end of the grace period");
     }
     forgetting.abort();
     if let Some(telling) = telling {
@@ -78,7 +78,7 @@ fn connections(wanted: usize) -> usize {
         .map_or(usize::MAX, |files| usize::try_from(files).unwrap_or(usize::MAX));
     let possible = files.saturating_sub(OTHER_FILES).max(1);
     if possible < wanted {
-        tracing::warn!("the system allows {files} open files, hence {possible} connections in place of {wanted}");
+        tracing::warn!("the system allows {files} open files: the limit is {possible} connections, not {wanted}");
     }
     wanted.min(possible)
 }
@@ -232,7 +232,7 @@ pub fn stop_signal() -> io::Result<impl Future<Output = ()> + Send + 'static> {
                 _ = terminate.recv() => return,
                 _ = interrupt.recv() => return,
                 _ = quit.recv() => return,
-                _ = hangup.recv() => tracing::info!("SIGHUP changes nothing: settings are read at the start"),
+                _ = hangup.recv() => tracing::info!("SIGHUP has no effect: settings are read only at the start"),
             }
         }
     })

@@ -25,54 +25,58 @@ use crate::error::ApiError;
 use crate::format::Format;
 use crate::wire::json;
 
-/// Every reference case beside what the program makes of it.
+/// Results of the built-in reference cases.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Validation {
-    /// Of the service.
+    /// Version of the service.
     pub version: &'static str,
-    /// Whether every check of the kind `reference` passed.
+    /// Whether every check of kind `reference` passed.
     pub passed: bool,
-    /// By group and case.
+    /// Checks, ordered by group and case.
     pub checks: Vec<Check>,
 }
 
-/// One number that is known from elsewhere, and what the program makes of it.
+/// Comparison of one computed number with its reference value.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Check {
-    /// The family of cases.
+    /// Group of cases.
     pub group: Group,
-    /// The case, by the name in its source.
+    /// Name of the case in its source.
     pub case: String,
-    /// What is compared.
+    /// Compared quantity.
     pub quantity: String,
-    /// The unit of the four numbers; empty where they have none.
+    /// Unit of the four numbers; empty for dimensionless numbers.
     pub unit: String,
-    /// What the source says; 0 where the number is a distance from it.
+    /// Reference value; 0 if the compared number is a distance from the reference.
     pub expected: f64,
-    /// What the program says; null where it gives no answer.
+    /// Computed value; null if the program gives none.
     #[schema(required = true)]
     pub got: Option<f64>,
-    /// Got less expected.
+    /// Computed minus reference value; null if there is no computed value.
     #[schema(required = true)]
     pub difference: Option<f64>,
-    /// How great the difference may be or, of a plausibility, the published uncertainty; null where none is published.
+    /// Allowed magnitude of the difference or, for a plausibility, the published uncertainty; null if none is
+    /// published.
     #[schema(required = true)]
     pub allowed: Option<f64>,
-    /// Whether the difference counts.
+    /// Kind of check.
     pub kind: Kind,
-    /// Whether the difference is within what is allowed; null for a plausibility.
+    /// Whether the difference is within `allowed`; null for a plausibility.
     #[schema(required = true)]
     pub passed: Option<bool>,
-    /// Who says so.
+    /// Source of the reference value.
     pub source: String,
-    /// Why so much is allowed, and what was assumed.
+    /// Reason for the allowed difference, and assumptions made.
     pub note: String,
     /// Differences below are roundings, which differ from machine to machine and are not told in a text.
     #[serde(skip)]
     rounding: f64,
 }
 
-/// A family of cases.
+/// Group of cases. `thesis`: the seven cases of the thesis. `conversions`: the initial conditions that the thesis
+/// prints. `theories`: the closed-form theories of the thesis compared with flights. `check_cases`: NASA's check cases.
+/// `standard_air`: the U.S. Standard Atmosphere, 1976. `frames`: coordinates and orbital elements. `flights`: real
+/// entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
@@ -92,7 +96,8 @@ pub enum Group {
     Flights,
 }
 
-/// Whether a difference counts.
+/// Kind of check. `reference`: all inputs are known; a difference greater than allowed is a failure. `plausibility`:
+/// some inputs are assumed or were not measured; the difference is reported and never a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {

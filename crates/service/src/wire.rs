@@ -65,7 +65,7 @@ pub enum AngleUnit {
 /// The words for units of angles.
 const ANGLE_UNITS: Words<AngleUnit> = Words {
     name: "AngleUnit",
-    doc: "The unit of every angle of a request and of its answer.",
+    doc: "Unit of every angle in a request and in its response.",
     words: &[
         word("rad", AngleUnit::Rad, "radians").doc("Radians."),
         word("deg", AngleUnit::Deg, "degrees").doc("Degrees."),

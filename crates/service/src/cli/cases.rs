@@ -29,7 +29,7 @@ pub struct Cases {
     #[command(flatten)]
     states: States,
 
-    /// Rows that a trajectory may have, at most 10000000; a row takes some kilobyte of memory
+    /// Maximum number of rows of a trajectory, at most 10000000; a row takes about 1 kB of memory
     #[arg(long, default_value_t = 1_000_000, value_parser = up_to(MOST_ROWS))]
     row_limit: usize,
 }
@@ -37,10 +37,10 @@ pub struct Cases {
 /// A file with JSON, and where the answer goes.
 #[derive(Args, Debug)]
 pub struct States {
-    /// The file with the JSON, one object or an array of them; - is standard input
+    /// File with the JSON, one object or an array of objects; - reads standard input
     file: PathBuf,
 
-    /// The file to write, in place of standard output; it is written beside, and takes its place when it is whole
+    /// Output file, in place of standard output; it is replaced only when the output is complete
     #[arg(long, short)]
     output: Option<PathBuf>,
 }
@@ -105,8 +105,7 @@ impl<A: Answer> Run<A> {
                 Err(self.failed(&ApiError::Invalid(vec![Fault::new("", "must have at least 1 case, got none")])))
             }
             Ok(Some(_)) if self.format == Format::Kml => {
-                let detail =
-                    "must be one case where KML is asked for, not a list: a document of XML is no line of a file";
+                let detail = "must be a single case for KML, not a list: an XML document does not fit on one line";
                 Err(self.failed(&ApiError::Invalid(vec![Fault::new("", detail)])))
             }
             Ok(Some(cases)) => self.many(&cases, output),
@@ -222,7 +221,7 @@ fn told(place: &str, error: &ApiError, most: usize) -> Vec<String> {
         if pointer.is_empty() { format!("  {detail}") } else { format!("  {pointer}: {detail}") }
     }));
     if problem.errors.len() > most {
-        lines.push("  and more, which are told where the case stands alone".to_owned());
+        lines.push("  more problems; run the case alone to list them all".to_owned());
     }
     lines
 }
@@ -250,8 +249,8 @@ fn table(index: usize, csv: &[u8], header: &mut Option<Vec<u8>>) -> Result<Vec<u
     let names = lines.next().unwrap_or_default();
     match header {
         Some(written) if *written != names => {
-            let detail =
-                "must be the same in every case of a table: the models of this case have other columns than the first";
+            let detail = "must be the same in all cases of a table: the models of this case have other columns than \
+                          those of the first";
             return Err(ApiError::Invalid(vec![Fault::new("/output/columns", detail)]));
         }
         Some(_) => {}
@@ -289,7 +288,7 @@ mod tests {
     fn a_problem_is_told_with_a_line_a_fault() {
         let faults = vec![Fault::new("/vehicle/mass", "is required"), Fault::new("", "must be an object, got null")];
         let error = ApiError::Invalid(faults);
-        let head = "reentry: case.json: Not a valid case: the request has 2 faults";
+        let head = "reentry: case.json: Case not valid: 2 problems in the request";
         let all = [head, "  /vehicle/mass: is required", "  must be an object, got null"];
         assert_eq!(told("case.json", &error, 2), all);
         assert_eq!(told("case.json", &error, 1)[..2], all[..2]);

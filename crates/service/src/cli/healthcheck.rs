@@ -9,11 +9,11 @@ use clap::Args;
 /// Which service to ask, and what.
 #[derive(Args, Debug)]
 pub struct Healthcheck {
-    /// Address and port on which the service listens; of 0.0.0.0, which is every address, it asks 127.0.0.1
+    /// Address and port of the service; for 0.0.0.0 (all addresses), 127.0.0.1 is checked
     #[arg(long, env = "REENTRY_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
 
-    /// Ask whether it takes new work, rather than whether it runs
+    /// Check whether the service accepts new requests, not only whether it is running
     #[arg(long)]
     ready: bool,
 }
@@ -32,7 +32,7 @@ impl Healthcheck {
         let url = format!("http://{address}{path}");
         match status(address, path) {
             Ok(line) if line.split(' ').nth(1) == Some("200") => Ok(()),
-            Ok(line) => Err(io::Error::other(format!("{url} answers {line:?}"))),
+            Ok(line) => Err(io::Error::other(format!("{url} returned {line:?}"))),
             Err(error) => Err(io::Error::new(error.kind(), format!("{url} does not answer: {error}"))),
         }
     }

@@ -13,18 +13,18 @@ use crate::validation::Validation;
 /// How a validation is printed.
 #[derive(Args, Debug)]
 pub struct Validate {
-    /// What is written
+    /// Output format
     #[arg(long, short, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Format {
-    /// Every check in a table, with its sources
+    /// All checks in a table, with their sources
     Text,
-    /// Every check with all its digits, as GET /validation answers
+    /// All checks with all digits, as GET /validation returns them
     Json,
-    /// A line a case, for a README
+    /// One line per case, for a README
     Markdown,
 }
 
@@ -42,7 +42,8 @@ impl Validate {
             Format::Markdown => validation.to_markdown().into_bytes(),
         };
         print(&text)?;
-        let misses: Vec<_> = validation.misses().map(|miss| format!("reentry: missed: {}", miss.told())).collect();
+        let misses: Vec<_> =
+            validation.misses().map(|miss| format!("reentry: check failed: {}", miss.told())).collect();
         tell(&misses);
         if validation.passed { Ok(()) } else { Err(Failure::Case) }
     }

@@ -14,20 +14,20 @@ use crate::state::AppState;
 use crate::wire::analytic::AnalyticResponse;
 use crate::wire::schema::names::AnalyticRequest;
 
-/// Sets a closed-form theory of entry beside the simulated flight.
+/// Compare a closed-form theory of entry with the simulated flight.
 ///
-/// Flies the case as `/simulate` does and predicts speed, flight-path angle and drag at its rows, in time order, by the theory that
-/// `solution` names. The theories know a planet that does not rotate and a vehicle that does not bank. A number that the theory
-/// does not give is null. `text/csv` has a line a row, time, altitude, then `simulated_` and `predicted_` of each quantity; null is
-/// an empty cell.
+/// Simulates the case as `/simulate` does and predicts speed, flight-path angle and drag deceleration at its rows, in
+/// time order, with the theory `solution`. The theories assume a planet that does not rotate and a bank angle of 0. A
+/// value that the theory does not give is null. `text/csv` has one line per row: time, altitude, then the `simulated_`
+/// and `predicted_` value of each quantity; null is an empty cell.
 #[utoipa::path(
     post,
     path = "/analytic",
     tag = "reentry",
-    params(("format" = Option<String>, Query, description = "`json` or `csv`; wins over `Accept`.")),
+    params(("format" = Option<String>, Query, description = "`json` or `csv`; takes precedence over `Accept`.")),
     request_body = AnalyticRequest,
     responses(
-        (status = 200, description = "The theory beside the flight.", content(
+        (status = 200, description = "Comparison of the theory with the flight.", content(
             (AnalyticResponse = "application/json"),
             (String = "text/csv"),
         )),

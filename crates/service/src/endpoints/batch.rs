@@ -22,11 +22,11 @@ use crate::wire::batch::{self, MOST_CASES};
 use crate::wire::json;
 use crate::wire::schema::names::SimulateRequest;
 
-/// Flies a list of cases.
+/// Simulate a list of cases.
 ///
-/// Answers with a line of JSON for each case, in order, as soon as it is there: what `/simulate` answers or, where a case fails,
-/// its problem document, whose pointers begin at the case. The other cases fly all the same. Cases for which the time allowed
-/// for a batch does not suffice have a problem of status 504. An answer with fewer lines than cases has broken off.
+/// Returns one line of JSON per case, in order, as soon as it is available: the response of `/simulate` or, if the case
+/// fails, its problem document, whose pointers start at the case. The other cases still run. Cases that do not fit into
+/// the time limit of a batch get a problem with status 504. A response with fewer lines than cases is incomplete.
 #[utoipa::path(
     post,
     path = "/simulate/batch",
@@ -34,7 +34,7 @@ use crate::wire::schema::names::SimulateRequest;
     params(("format" = Option<String>, Query, description = "`ndjson`.")),
     request_body = Vec<SimulateRequest>,
     responses(
-        (status = 200, description = "A line a case: a flight or a problem document.",
+        (status = 200, description = "One line per case: a flight or a problem document.",
             content_type = "application/x-ndjson", body = String),
     ),
 )]

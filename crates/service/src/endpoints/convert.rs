@@ -14,16 +14,16 @@ use crate::state::AppState;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::schema::names::ConvertRequest;
 
-/// Writes a state in every coordinate system.
+/// Convert a state to all coordinate systems.
 ///
-/// Each representation in the answer is itself a complete `initial_state`.
+/// Each representation in the response is a complete `initial_state`.
 #[utoipa::path(
     post,
     path = "/convert",
     tag = "reentry",
     params(("format" = Option<String>, Query, description = "`json`.")),
     request_body = ConvertRequest,
-    responses((status = 200, description = "The state in every coordinate system.", body = ConvertResponse)),
+    responses((status = 200, description = "State in all coordinate systems.", body = ConvertResponse)),
 )]
 pub async fn convert(State(app): State<AppState>, parts: Parts, body: Payload) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;

@@ -8,32 +8,32 @@ use utoipa::ToSchema;
 
 use crate::state::AppState;
 
-/// How the service is.
+/// Health of the service.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Health {
-    /// `ok`, `busy` (no place for another job, or no memory for its answer) or `draining` (going down).
+    /// `ok`, `busy` (no room for another request, or no memory for its response) or `draining` (shutting down).
     status: &'static str,
 }
 
-/// Whether the service runs.
+/// Check whether the service is running.
 #[utoipa::path(
     get,
     path = "/health/live",
     tag = "health",
-    responses((status = 200, description = "It runs.", body = Health)),
+    responses((status = 200, description = "The service is running.", body = Health)),
 )]
 pub async fn live() -> Json<Health> {
     Json(Health { status: "ok" })
 }
 
-/// Whether the service takes new work.
+/// Check whether the service accepts new requests.
 #[utoipa::path(
     get,
     path = "/health/ready",
     tag = "health",
     responses(
-        (status = 200, description = "It takes new work.", body = Health),
-        (status = 503, description = "It is busy or going down.", body = Health),
+        (status = 200, description = "The service accepts new requests.", body = Health),
+        (status = 503, description = "The service is busy or shutting down.", body = Health),
     ),
 )]
 pub async fn ready(State(app): State<AppState>) -> (StatusCode, Json<Health>) {

@@ -8,15 +8,16 @@ use crate::error::ApiError;
 use crate::metrics::MEDIA_TYPE;
 use crate::state::AppState;
 
-/// What the service counts, for Prometheus.
+/// Get the metrics of the service for Prometheus.
 ///
-/// Requests, their duration and bytes, by route and outcome; jobs that wait and run, what they waited and took, by route; cancelled jobs;
-/// integration steps and rows. Answered at another address, and not here, where the service has one for it.
+/// Requests with their duration and bytes, by route and outcome; jobs that wait and run, with their waiting and
+/// computing times, by route; cancelled jobs; integration steps and rows. If the service has a separate address for
+/// metrics, this path exists only there.
 #[utoipa::path(
     get,
     path = "/metrics",
     tag = "health",
-    responses((status = 200, description = "The counts.", content_type = "application/openmetrics-text", body = String)),
+    responses((status = 200, description = "Metrics.", content_type = "application/openmetrics-text", body = String)),
 )]
 pub async fn metrics(State(app): State<AppState>) -> Result<Response, ApiError> {
     let text = app.metrics.text(app.now()).map_err(|_| ApiError::Internal)?;

@@ -14,26 +14,28 @@ use crate::state::AppState;
 use crate::wire::schema::names::SimulateRequest;
 use crate::wire::trajectory::SimulateResponse;
 
-/// Flies a case.
+/// Simulate one case.
 ///
-/// Integrates the motion of a point mass from its initial state until it crosses the stop altitude downwards or the stop time
-/// is reached, and answers with the initial and final state, the peaks and the trajectory.
-/// `text/csv` has the trajectory alone: a header of the names, and a line an instant.
+/// Integrates the motion of a point mass from its initial state until a stop condition is met, and returns the initial
+/// and final states, the peaks and the trajectory. `text/csv` contains only the trajectory: a header with the column
+/// names, and one line per row.
 ///
-/// The rest are maps, in degrees whatever the unit of the case: the track with a vertex a row and its time, the end, the peaks and the
-/// events as points with their value, unit, time and altitude. Altitudes are above the planet's ellipsoid. `application/geo+json` is a feature
-/// collection: the track, cut at the antimeridian, with `times` and, with an epoch, `times_utc` in the shape of its coordinates, and with
-/// the warnings of the flight. `application/vnd.google-earth.kml+xml` is a `gx:Track` with an epoch, and a line without instants
-/// without one. `application/czml+json` is a list of packets, which starts at 2000-01-01T12:00:00Z without an epoch. The places are
-/// those of the case's planet, which a map takes for the Earth's.
+/// The other formats are maps, in degrees regardless of `angle_unit`. They contain the track, with one vertex and its
+/// time per row, and the end, the peaks and the events as points with their value, unit, time and altitude. Altitudes
+/// are above the planet's ellipsoid. `application/geo+json` is a feature collection: the track is cut at the
+/// antimeridian and has `times` and, with an epoch, `times_utc` in the shape of its coordinates, and the warnings of
+/// the flight. `application/vnd.google-earth.kml+xml` is a `gx:Track` with an epoch, and a line without times
+/// otherwise. `application/czml+json` is a list of packets; without an epoch it starts at 2000-01-01T12:00:00Z.
+/// Positions are those on the planet of the case; maps show them on the Earth.
 #[utoipa::path(
     post,
     path = "/simulate",
     tag = "reentry",
-    params(("format" = Option<String>, Query, description = "`json`, `csv`, `geojson`, `kml` or `czml`; wins over `Accept`.")),
+    params(("format" = Option<String>, Query, description = "`json`, `csv`, `geojson`, `kml` or `czml`; takes \
+                                                             precedence over `Accept`.")),
     request_body = SimulateRequest,
     responses(
-        (status = 200, description = "The flight.", content(
+        (status = 200, description = "Simulated flight.", content(
             (SimulateResponse = "application/json"),
             (String = "text/csv"),
             (Object = "application/geo+json"),

@@ -13,17 +13,18 @@ use crate::reply::reply;
 use crate::state::AppState;
 use crate::validation::Validation;
 
-/// Flies every reference case, and answers what is expected and what comes out.
+/// Run the built-in reference cases and compare the results with expected values.
 ///
-/// The cases are built into the program and go the way of `/simulate`, `/analytic` and `/convert`. A check of the kind `reference` that
-/// differs by more than is allowed is a fault of the program; a `plausibility`, an entry that was flown, depends on more than was
-/// published of it, and its difference is told beside the published uncertainty.
+/// The cases run as requests to `/simulate`, `/analytic` and `/convert` do. A check of kind `reference` fails if its
+/// difference exceeds the allowed one; that is a defect of the program. A check of kind `plausibility` compares with a
+/// real flight, which published data do not determine fully: its difference is reported with the published uncertainty
+/// and never fails.
 #[utoipa::path(
     get,
     path = "/validation",
     tag = "reentry",
     params(("format" = Option<String>, Query, description = "`json`.")),
-    responses((status = 200, description = "Every check; whether all passed.", body = Validation)),
+    responses((status = 200, description = "All checks, and whether they passed.", body = Validation)),
 )]
 pub async fn validation(State(app): State<AppState>, parts: Parts) -> Result<Response, ApiError> {
     let format = Format::negotiate(&parts, &[Format::Json])?;

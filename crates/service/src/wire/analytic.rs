@@ -25,18 +25,21 @@ use super::{Angle, AngleUnit};
 /// The words for theories.
 pub const SOLUTIONS: Words<Solution> = Words {
     name: "Solution",
-    doc: "The theory: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = `C_L/C_D`; e denotes the initial state; equations of Jameson 2006.",
+    doc: "Closed-form theory, with the equation numbers of Jameson 2006: η = `ρSC_D/(2mβ)`, β = 1/scale height, k = \
+          `C_L/C_D`; e denotes the initial state.",
     words: &[
         word("shallow_glide", Solution::ShallowGlide, "Shallow glide")
-            .doc("Equations 77 to 79: V² = g₀r₀/(βr₀ηk + 1), γ = -2g₀/(kβV²); up to |γ| = 5°. Needs lift."),
+            .doc("Equations 77 to 79: V² = g₀r₀/(βr₀ηk + 1), γ = -2g₀/(kβV²); valid up to |γ| = 5°. Requires lift."),
         word("loh", Solution::Loh, "Loh")
-            .doc("Equation 80: γ of a descent to second order, with the simulated speed. Needs lift."),
-        word("steep_glide", Solution::SteepGlide, "Steep glide")
-            .doc("Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Needs lift and a descent."),
+            .doc("Equation 80: γ of a descent to second order, with the simulated speed. Requires lift."),
+        word("steep_glide", Solution::SteepGlide, "Steep glide").doc(
+            "Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Requires lift and a \
+             descent.",
+        ),
         word("steep_ballistic", Solution::SteepBallistic, "Steep ballistic")
-            .doc("Equations 84 to 87: γ = `γ_e`, and V of a straight line. Needs a descent, without lift."),
+            .doc("Equations 84 to 87: γ = `γ_e`, and V along a straight line. Requires a descent without lift."),
         word("medium_glide", Solution::MediumGlide, "Medium glide")
-            .doc("Equations 88 to 90: Wang and Ting's, from more than circular speed. Needs lift and a descent."),
+            .doc("Equations 88 to 90: theory of Wang and Ting for supercircular entry. Requires lift and a descent."),
     ],
 };
 
@@ -44,12 +47,12 @@ pub const SOLUTIONS: Words<Solution> = Words {
 pub fn analytic_request(object: &mut Object) -> Option<(Solution, SimulateRequest)> {
     object.named(
         "AnalyticRequest",
-        "A case to simulate, as for `/simulate`, and the theory to set beside it. `output` cannot be `{\"trajectory\": false}`: the predictions are \
-         made at the rows.",
+        "Case to simulate, as for `/simulate`, and the theory to compare with it. `output` must not be \
+         `{\"trajectory\": false}`: the theory is evaluated at the rows.",
     );
     let case = case(object);
     let solution =
-        object.field("solution", "Theory").doc("The theory to set beside the simulated flight.").word(&SOLUTIONS);
+        object.field("solution", "Theory").doc("Theory to compare with the simulated flight.").word(&SOLUTIONS);
     // Theories know neither heating nor events, but an empty list is none.
     object.conceal("heating");
     object.refine("events", || json!({"maxItems": 0}));
@@ -101,14 +104,14 @@ impl TheoryRequest {
         let mut misplaced = request.beyond_rows(output);
         let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
         if request.output.columns.is_some() {
-            let detail = "must not be given: this answer has columns of its own";
+            let detail = "must not be given: the columns of this response are fixed";
             misplaced.push(Fault::new("/output/columns", detail));
         }
         if request.heating.is_some() {
-            misplaced.push(Fault::new("/heating", "must not be given: the theories know no heating"));
+            misplaced.push(Fault::new("/heating", "must not be given: the theories do not include heating"));
         }
         if request.output.sampling.is_none() {
-            let detail = "must not be false: the predictions are made at the rows of the flight";
+            let detail = "must not be false: the theory is evaluated at the rows of the flight";
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
         let (scenario, theory) = match request.try_into_scenario() {
@@ -163,101 +166,103 @@ fn fault_of(fault: &TheoryFault, request: &SimulateRequest) -> Fault {
     Fault::new(pointer, detail)
 }
 
-/// The simulated flight: one array a quantity, all of one length, time strictly increasing.
+/// Simulated flight: one array per quantity, all of the same length; time is strictly increasing.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Simulated {
-    /// Since the start, s.
+    /// Time since the start, s.
     pub time: Vec<f64>,
-    /// Height above the planet's shape along the radius vector, m.
+    /// Altitude above the planet's surface along the radius vector, m.
     pub altitude: Vec<f64>,
-    /// Relative to the rotating planet, m/s.
+    /// Speed relative to the rotating planet, m/s.
     pub speed: Vec<f64>,
-    /// Of the relative velocity above the plane normal to the radius.
+    /// Angle of the relative velocity above the plane normal to the radius; negative in descent.
     pub flight_path_angle: Vec<f64>,
-    /// D/m, m/s²: the part of the deceleration that is drag's.
+    /// Drag over mass D/m, m/s²; the part of the deceleration caused by drag.
     pub drag_deceleration: Vec<f64>,
 }
 
-/// What the theory predicts at the same instants and altitudes; null where it gives no number.
+/// Prediction of the theory at the same times and altitudes; null where the theory gives no value.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Predicted {
-    /// Those of the flight, s.
+    /// Time of the simulated flight, s.
     pub time: Vec<f64>,
-    /// Those of the flight, m.
+    /// Altitude of the simulated flight, m.
     pub altitude: Vec<f64>,
-    /// m/s; null with `loh`, which takes the simulated speed.
+    /// Speed, m/s; null for `loh`, which uses the simulated speed.
     pub speed: Vec<Option<f64>>,
-    /// Above the plane normal to the radius.
+    /// Flight-path angle above the plane normal to the radius; negative in descent.
     pub flight_path_angle: Vec<Option<f64>>,
-    /// D/m, m/s², which the theories take for the whole deceleration; null with `loh`.
+    /// Drag over mass D/m, m/s², which the theories take as the total deceleration; null for `loh`.
     pub drag_deceleration: Vec<Option<f64>>,
 }
 
-/// Predicted minus simulated, at the same rows; null where the theory gives no number.
+/// Predicted minus simulated value at the same rows; null where the theory gives no value.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Differences {
-    /// m/s.
+    /// Difference of speed, m/s.
     pub speed: Vec<Option<f64>>,
-    /// In the unit of angles.
+    /// Difference of flight-path angle, in the unit of angles.
     pub flight_path_angle: Vec<Option<f64>>,
-    /// m/s².
+    /// Difference of drag deceleration, m/s².
     pub drag_deceleration: Vec<Option<f64>>,
 }
 
-/// The part of the flight, in time order, outside which the theory gives no number.
+/// Part of the flight, in time order, in which the theory gives values.
 ///
-/// The steep and medium solutions end where they first give none; `shallow_glide` and `loh` where they last give one, with gaps
-/// before, maybe.
+/// The steep and medium solutions end at their first missing value; `shallow_glide` and `loh` end after their last
+/// value and may have gaps before it.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Valid {
-    /// Where it begins, m, along the radius vector; null where the theory never gives a number.
+    /// Altitude at which this part begins, m, along the radius vector; null if the theory gives no value at all.
     #[schema(required = true)]
     pub from_altitude: Option<f64>,
-    /// Where it ends, m, located between the rows; null where the theory never gives a number.
+    /// Altitude at which this part ends, m, along the radius vector, located between the rows; null if the theory gives
+    /// no value at all.
     #[schema(required = true)]
     pub to_altitude: Option<f64>,
-    /// Why it ends, or never begins.
+    /// Reason why this part ends, or why it is empty.
     pub ends_because: String,
 }
 
-/// A theory beside a flight.
+/// Comparison of a theory with a simulated flight.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct AnalyticResponse {
-    /// As in the request.
+    /// Name of the case in the request.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub name: Option<String>,
-    /// As in the request.
+    /// Theory named in the request.
     #[schema(value_type = names::Solution)]
     pub solution: &'static str,
-    /// The unit of every angle.
+    /// Unit of every angle in the response.
     #[schema(value_type = names::AngleUnit)]
     pub angle_unit: AngleUnit,
-    /// Of the service.
+    /// Version of the service.
     pub version: &'static str,
-    /// The flight, at the rows of `output`.
+    /// Simulated flight at the rows of `output`.
     pub simulated: Simulated,
-    /// The theory.
+    /// Prediction of the theory.
     pub predicted: Predicted,
-    /// Predicted minus simulated.
+    /// Predicted minus simulated values.
     pub differences: Differences,
-    /// Where the theory holds.
+    /// Part of the flight in which the theory gives values.
     pub valid: Valid,
-    /// The derivatives of the simulated flight's end, with `sensitivities`.
+    /// Derivatives of the simulated flight; present with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub sensitivities: Option<SensitivitiesAnswer>,
-    /// How far the simulated flight's end scatters, to first order, with `dispersions`.
+    /// Scatter of the end of the simulated flight, to first order; present with `dispersions`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub covariance: Option<Covariance>,
-    /// How exact the simulated flight is, with `verify`; absent with the warning `not_verified` where the finer flight cannot be finished.
+    /// Numerical accuracy of the simulated flight; present with `verify`. Absent, with the warning `not_verified`, if
+    /// the finer flight fails.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub verification: Option<Verification>,
-    /// What the user should know.
+    /// Warnings about the request and the flight.
     pub warnings: Vec<Warning>,
-    /// The request with every default filled in, with `echo`: it can be sent again.
+    /// Request with all defaults filled in, which can be sent again; present with `echo`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = names::AnalyticRequest)]
     pub case: Option<Value>,

@@ -43,20 +43,20 @@ impl Atmosphere {
 pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
     object.named(
         "Atmosphere",
-        "The atmosphere, which turns with the planet; altitudes are those along the radius vector.",
+        "Atmosphere model. The air rotates with the planet; altitudes are along the radius vector.",
     );
     object.variants(
-        "The kind of atmosphere.",
+        "Kind of atmosphere.",
         &[
-            variant("exponential", "Exponential", "One scale height.", &exponential),
-            variant("us76", "U.S. Standard Atmosphere, 1976", "The U.S. Standard Atmosphere, 1976.", &us76),
+            variant("exponential", "Exponential", "Density with one scale height.", &exponential),
+            variant("us76", "U.S. Standard Atmosphere, 1976", "U.S. Standard Atmosphere, 1976.", &us76),
             variant(
                 "layered_exponential",
-                "Exponential in layers",
-                "Layers of one scale height each.",
+                "Layered exponential",
+                "Layers with one scale height each.",
                 &layered_exponential,
             ),
-            variant("table", "Table", "A table.", &table),
+            variant("table", "Table", "Table by altitude.", &table),
             variant("vacuum", "Vacuum", "No air.", &vacuum),
         ],
     )
@@ -66,7 +66,7 @@ pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
 fn us76(object: &mut Object) -> Option<Atmosphere> {
     object.named(
         "Us76Atmosphere",
-        "The U.S. Standard Atmosphere, 1976, from -5 to 1000 km, with temperature, pressure and speed of sound.",
+        "U.S. Standard Atmosphere, 1976, from -5 to 1000 km: density, temperature, pressure and speed of sound.",
     );
     Some(Atmosphere::of_earth(CoreAtmosphere::Us76, "Atmosphere us76 is the Earth's: give a table"))
 }
@@ -82,13 +82,13 @@ fn exponential(object: &mut Object) -> Option<Atmosphere> {
     let is_given = object.has("surface_density") & object.has("scale_height");
     let surface_density = object
         .field("surface_density", "Density at the surface")
-        .doc("ρ₀, at altitude 0, kg/m³.")
+        .doc("Density ρ₀ at altitude 0, kg/m³.")
         .unit("kg/m³")
         .default(EARTH_JAMESON[0])
         .number(Bound::NON_NEGATIVE);
     let scale_height = object
         .field("scale_height", "Scale height")
-        .doc("H, m.")
+        .doc("Scale height H, m.")
         .unit("m")
         .default(EARTH_JAMESON[1])
         .number(Bound::POSITIVE);
@@ -100,23 +100,24 @@ fn exponential(object: &mut Object) -> Option<Atmosphere> {
 /// Layers whose numbers are known.
 const PRESETS: Words<()> = Words {
     name: "LayersPreset",
-    doc: "The layers whose numbers are known.",
-    words: &[word("earth_seven_layer", (), "Earth in seven layers")
-        .doc("The Earth's, in seven layers derived from `us76`, whose density they have at their bases of 0, 10, 43, 68, 82, 112 and 120 km: within \
-              5 % of it up to 130 km, and thinner above, by 47 % at 150 km.")],
+    doc: "Predefined layers.",
+    words: &[word("earth_seven_layer", (), "Earth in seven layers").doc(
+        "The Earth in seven layers that match the density of `us76` at their bases of 0, 10, 43, 68, 82, 112 and 120 \
+         km. The density is within 5 % of `us76` up to 130 km, and 47 % lower at 150 km.",
+    )],
 };
 
 fn layered_exponential(object: &mut Object) -> Option<Atmosphere> {
     object.named(
         "LayeredAtmosphere",
-        "Density ρ e^(-(h - base)/H) in each of several layers. Exactly one of `layers` and `preset`.",
+        "Density ρ e^(-(h - base)/H) in each layer. Exactly one of `layers` and `preset` must be given.",
     );
     let layers = object
         .field("layers", "Layers")
-        .doc("From the lowest to the highest; the first reaches down, the last up without end.")
+        .doc("Layers from the lowest to the highest. The first extends downward and the last upward without limit.")
         .optional()
         .objects([1, MOST_ENTRIES], layer);
-    let preset = object.field("preset", "Preset").doc("Layers whose numbers are known.").optional().word(&PRESETS);
+    let preset = object.field("preset", "Preset").doc("Predefined layers.").optional().word(&PRESETS);
     let bases: Vec<_> = layers.iter().flatten().map(|layer| layer.base_altitude).collect();
     let sound = object.ascending("layers", "/base_altitude", &bases);
     object.exactly_one(&["layers", "preset"])?;
@@ -134,14 +135,19 @@ fn layered_exponential(object: &mut Object) -> Option<Atmosphere> {
 }
 
 fn layer(object: &mut Object) -> Option<Layer> {
-    object.named("Layer", "A layer, up to the base of the next.");
+    object.named("Layer", "Layer of the atmosphere, up to the base of the next one.");
     let base_altitude = object
         .field("base_altitude", "Base")
-        .doc("Where it begins, m; greater than that of the layer before it.")
+        .doc("Altitude of the base along the radius vector, m. It must be greater than that of the previous layer.")
         .unit("m")
         .number(Bound::DISTANCE);
-    let density = object.field("density", "Density").doc("ρ, there, kg/m³.").unit("kg/m³").number(Bound::NON_NEGATIVE);
-    let scale_height = object.field("scale_height", "Scale height").doc("H, m.").unit("m").number(Bound::POSITIVE);
+    let density = object
+        .field("density", "Density")
+        .doc("Density ρ at the base, kg/m³.")
+        .unit("kg/m³")
+        .number(Bound::NON_NEGATIVE);
+    let scale_height =
+        object.field("scale_height", "Scale height").doc("Scale height H, m.").unit("m").number(Bound::POSITIVE);
     Some(Layer { base_altitude: base_altitude?, density: density?, scale_height: scale_height? })
 }
 
@@ -149,42 +155,60 @@ fn layer(object: &mut Object) -> Option<Layer> {
 const ENTRIES: [usize; 2] = [2, MOST_ENTRIES];
 
 fn table(object: &mut Object) -> Option<Atmosphere> {
-    object.named("TableAtmosphere", "The air by altitude, smooth between the entries; all lists have as many.");
+    object.named(
+        "TableAtmosphere",
+        "Properties of the air by altitude, interpolated smoothly. All lists must have the same length.",
+    );
     let altitude = object
         .field("altitude", "Altitude")
-        .doc("Along the radius vector, ascending, m.")
+        .doc("Altitudes along the radius vector, ascending, m.")
         .unit("m")
         .ascending()
         .numbers(Bound::DISTANCE, ENTRIES);
     let density = object
         .field("density", "Density")
-        .doc("kg/m³. Beyond the altitudes its logarithm goes on in a straight line.")
+        .doc("Densities, kg/m³. Outside the table, the logarithm of the density is extrapolated linearly.")
         .unit("kg/m³")
         .numbers(Bound::POSITIVE, ENTRIES);
     let temperature = object
         .field("temperature", "Temperature")
-        .doc("K. With it the speed of sound is √(γRT/M): that of air, or of the gas with `molar_mass` and `heat_capacity_ratio`.")
+        .doc(
+            "Temperatures, K. They give the speed of sound √(γRT/M), with γ and M of air, or of the gas given by \
+             `molar_mass` and `heat_capacity_ratio`.",
+        )
         .unit("K")
         .optional()
         .numbers(Bound::POSITIVE, ENTRIES);
-    let pressure =
-        object.field("pressure", "Pressure").doc("Pa.").unit("Pa").optional().numbers(Bound::POSITIVE, ENTRIES);
+    let pressure = object
+        .field("pressure", "Pressure")
+        .doc("Pressures, Pa.")
+        .unit("Pa")
+        .optional()
+        .numbers(Bound::POSITIVE, ENTRIES);
     let speed_of_sound = object
         .field("speed_of_sound", "Speeds of sound")
-        .doc("m/s, in place of the one that follows from the temperature; not with `molar_mass` and `heat_capacity_ratio`. Beyond the altitudes it \
-              stays as it is at the end.")
+        .doc(
+            "Speeds of sound, m/s, in place of those from the temperature. Not supported with `molar_mass` and \
+             `heat_capacity_ratio`. Outside the table, the value at its end is used.",
+        )
         .unit("m/s")
         .optional()
         .numbers(Bound::POSITIVE, ENTRIES);
     let molar_mass = object
         .field("molar_mass", "Molar mass")
-        .doc("M of the gas, kg/mol: a number, or one for each altitude; 0.04401 for carbon dioxide. With `heat_capacity_ratio` and `temperature`.")
+        .doc(
+            "Molar mass M of the gas, kg/mol: one number, or one per altitude; 0.04401 for carbon dioxide. It \
+             requires `heat_capacity_ratio` and `temperature`.",
+        )
         .unit("kg/mol")
         .optional()
         .number_or_numbers(Bound::MOLAR_MASS, ENTRIES);
     let heat_capacity_ratio = object
         .field("heat_capacity_ratio", "Heat capacity ratio")
-        .doc("γ of the gas: a number, or one for each altitude, of which γ/M is interpolated. With `molar_mass` and `temperature`.")
+        .doc(
+            "Heat capacity ratio γ of the gas: one number, or one per altitude; γ/M is interpolated. It requires \
+             `molar_mass` and `temperature`.",
+        )
         .optional()
         .number_or_numbers(Bound::HEAT_CAPACITY_RATIO, ENTRIES);
     let lists = ["density", "temperature", "pressure", "speed_of_sound", "molar_mass", "heat_capacity_ratio"];

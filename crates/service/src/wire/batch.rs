@@ -14,7 +14,7 @@ pub const MOST_CASES: usize = 1000;
 pub fn cases(elements: Option<Vec<&RawValue>>) -> Result<Vec<&RawValue>, Vec<Fault>> {
     let fault = |detail| Err(vec![Fault::new("", detail)]);
     match elements {
-        None => fault("must be an array of cases, each as /simulate takes it".to_owned()),
+        None => fault("must be an array of cases, each a request of /simulate".to_owned()),
         Some(cases) if cases.is_empty() => fault("must have at least 1 case, got none".to_owned()),
         Some(cases) if cases.len() > MOST_CASES => Err(vec![too_many(cases.len())]),
         Some(cases) => Ok(cases),

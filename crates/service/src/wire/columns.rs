@@ -126,50 +126,71 @@ const fn orbit_turn(name: &'static str, description: &'static str, value: fn(&Or
 
 /// Every quantity, in the order of the answer.
 pub static COLUMNS: [Column; 44] = [
-    column("time", "Since the start, s.", |point| point.time),
-    column("altitude", "Height above the planet's shape along the radius vector, m.", |point| point.loads.altitude),
+    column("time", "Time since the start, s.", |point| point.time),
+    column("altitude", "Altitude above the planet's surface along the radius vector, m.", |point| point.loads.altitude),
     column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
-    angle("longitude", "East positive, in (-π, π].", |point| point.flight_path.longitude),
-    angle("geocentric_latitude", "Angle of the radius vector above the equatorial plane.", |point| {
+    angle("longitude", "Longitude, east positive, in (-π, π].", |point| point.flight_path.longitude),
+    angle("geocentric_latitude", "Angle of the radius vector above the equatorial plane, north positive.", |point| {
         point.flight_path.geocentric_latitude
     }),
-    angle("geodetic_latitude", "Angle of the normal of the planet's shape above the equatorial plane.", |point| {
+    angle("geodetic_latitude", "Angle of the surface normal above the equatorial plane, north positive.", |point| {
         point.geodetic_latitude
     }),
-    column("geodetic_altitude", "Height above the planet's shape along its normal, m.", |point| {
+    column("geodetic_altitude", "Altitude above the planet's surface along the surface normal, m.", |point| {
         point.geodetic_altitude
     }),
-    column("speed", "Relative to the rotating planet, m/s.", |point| point.flight_path.speed),
-    angle("flight_path_angle", "Of the relative velocity above the plane normal to the radius.", |point| {
-        point.flight_path.flight_path_angle
+    column("speed", "Speed relative to the rotating planet, m/s.", |point| point.flight_path.speed),
+    angle(
+        "flight_path_angle",
+        "Angle of the velocity relative to the rotating planet above the plane normal to the radius; negative in \
+         descent.",
+        |point| point.flight_path.flight_path_angle,
+    ),
+    angle(
+        "heading",
+        "Heading of the velocity relative to the rotating planet, from east (0) towards north (π/2), in (-π, π].",
+        |point| point.flight_path.heading,
+    ),
+    column("density", "Density of the air, kg/m³.", |point| point.loads.density),
+    column("dynamic_pressure", "Dynamic pressure ½ρV² with the air speed V, Pa.", |point| {
+        point.loads.dynamic_pressure
     }),
-    angle("heading", "From east (0) towards north (π/2), in (-π, π].", |point| point.flight_path.heading),
-    column("density", "Of the air, kg/m³.", |point| point.loads.density),
-    column("dynamic_pressure", "½ρV² of the speed relative to the air, Pa.", |point| point.loads.dynamic_pressure),
     column(
         "deceleration",
-        "-dV/dt of the relative speed, m/s²; at rest minus the magnitude of the acceleration.",
+        "Deceleration -dV/dt of the speed relative to the rotating planet, m/s²; at rest, minus the magnitude of the \
+         acceleration.",
         |point| point.loads.deceleration,
     ),
-    column("load_factor", "Lift, drag and thrust over mass and 9.80665 m/s².", |point| point.loads.load_factor),
+    column("load_factor", "Load factor: resultant of lift, drag and thrust over mass and 9.80665 m/s².", |point| {
+        point.loads.load_factor
+    }),
     of(
         "azimuth",
-        "The compass direction of the heading: from north (0) towards east (π/2), in [0, 2π).",
+        "Azimuth of the velocity relative to the rotating planet, from north (0) towards east (π/2), in [0, 2π).",
         ColumnSource::Turn(azimuth),
     ),
-    column("air_speed", "Relative to the air, m/s.", |point| point.loads.air_speed),
-    maybe("temperature", "Of the air, K; where the atmosphere has a temperature.", Requirement::Temperature, |point| {
-        point.temperature
-    }),
-    maybe("pressure", "Of the air, Pa; where the atmosphere has a pressure.", Requirement::Pressure, |point| {
-        point.pressure
-    }),
-    maybe("speed_of_sound", "In the air, m/s; where the atmosphere has one.", Requirement::SpeedOfSound, |point| {
-        point.speed_of_sound
-    }),
+    column("air_speed", "Speed relative to the air, m/s.", |point| point.loads.air_speed),
+    maybe(
+        "temperature",
+        "Temperature of the air, K; present if the atmosphere has a temperature.",
+        Requirement::Temperature,
+        |point| point.temperature,
+    ),
+    maybe(
+        "pressure",
+        "Pressure of the air, Pa; present if the atmosphere has a pressure.",
+        Requirement::Pressure,
+        |point| point.pressure,
+    ),
+    maybe(
+        "speed_of_sound",
+        "Speed of sound in the air, m/s; present if the atmosphere has one.",
+        Requirement::SpeedOfSound,
+        |point| point.speed_of_sound,
+    ),
     maybe(
         "mach",
-        "The speed relative to the air over that of sound; where the atmosphere has a speed of sound.",
+        "Mach number: air speed over speed of sound; present if the atmosphere has a speed of sound.",
         Requirement::SpeedOfSound,
         |point| point.loads.mach,
     ),
@@ -177,127 +198,135 @@ pub static COLUMNS: [Column; 44] = [
     angle("angle_of_attack", "As commanded.", |point| point.angle_of_attack),
     maybe(
         "downrange",
-        "From the initial ground point along the great circle of its heading, m, on the sphere of the equatorial radius; \
-         null where the flight starts vertically or at rest.",
+        "Distance from the initial ground point along the great circle of the initial heading, m, on the sphere with \
+         the equatorial radius; null if the flight starts vertically or at rest.",
         Requirement::Nothing,
         |point| point.downrange,
     ),
     maybe(
         "crossrange",
-        "To the right of that great circle, m; null where the flight starts vertically or at rest.",
+        "Distance to the right of the great circle of the initial heading, m, on the sphere with the equatorial \
+         radius; null if the flight starts vertically or at rest.",
         Requirement::Nothing,
         |point| point.crossrange,
     ),
-    column("inertial_speed", "Relative to inertial space, m/s.", |point| point.inertial_speed),
-    angle("inertial_flight_path_angle", "Of the inertial velocity above the plane normal to the radius.", |point| {
-        point.inertial_flight_path_angle
-    }),
-    column(
-        "specific_energy",
-        "Half the squared inertial speed and the potential of the planet's gravity, J/kg.",
-        |point| point.specific_energy,
+    column("inertial_speed", "Speed relative to inertial space, m/s.", |point| point.inertial_speed),
+    angle(
+        "inertial_flight_path_angle",
+        "Angle of the inertial velocity above the plane normal to the radius; negative in descent.",
+        |point| point.inertial_flight_path_angle,
     ),
+    column("specific_energy", "Half the squared inertial speed plus the gravitational potential, J/kg.", |point| {
+        point.specific_energy
+    }),
     Column {
         requirement: Requirement::Epoch,
         ..of(
             "utc",
-            "The instant in UTC, RFC 3339 to the microsecond; with an epoch; leap seconds counted. Null after the year 9999.",
+            "UTC in RFC 3339 format, to the microsecond, leap seconds included; present with an `epoch`. Null after \
+             the year 9999.",
             ColumnSource::Utc,
         )
     },
     maybe(
         "convective_heat_flux",
-        "Into the stagnation point by convection, W/m²; with heating.",
+        "Convective heat flux into the stagnation point, W/m²; present with `heating`.",
         Requirement::Heating,
         |point| point.loads.heat_flux.map(|flux| flux.convective),
     ),
     maybe(
         "radiative_heat_flux",
-        "Into the stagnation point by radiation, W/m²; with heating.",
+        "Radiative heat flux into the stagnation point, W/m²; present with `heating`.",
         Requirement::Heating,
         |point| point.loads.heat_flux.map(|flux| flux.radiative),
     ),
     maybe(
         "heat_load",
-        "The integral of both heat fluxes since the start, J/m²; with heating.",
+        "Integral of both heat fluxes since the start, J/m²; present with `heating`.",
         Requirement::Heating,
         |point| point.heat_load,
     ),
     maybe(
         "wall_temperature",
-        "At which the wall radiates as much as it gets, K; with heating.",
+        "Radiative equilibrium temperature of the wall, K; present with `heating`.",
         Requirement::Heating,
         |point| point.wall_temperature,
     ),
     Column {
         requirement: Requirement::ChangingMass,
-        ..column("mass", "kg; where an event may change it.", |point| point.mass)
+        ..column("mass", "Mass of the vehicle, kg; present if an event may change it.", |point| point.mass)
     },
     column(
         "ground_range",
-        "From the initial ground point to that of the vehicle along the great circle between them, m, on the sphere of \
-         the equatorial radius r₀; at most π r₀.",
+        "Great-circle distance from the initial ground point to that of the vehicle, m, on the sphere with the \
+         equatorial radius r₀; at most π r₀.",
         |point| point.ground_range,
     ),
     column(
         "ground_distance",
-        "The length of the ground track since the start, m, on the sphere of the equatorial radius.",
+        "Length of the ground track since the start, m, on the sphere with the equatorial radius.",
         |point| point.ground_distance,
     ),
     orbit("semi_major_axis", SEMI_MAJOR_AXIS, |orbit| match orbit.elements.shape {
         OrbitShape::SemiMajorAxis(axis) => Some(axis),
         OrbitShape::SemiLatusRectum(_) => None,
     }),
-    orbit("eccentricity", "Of the osculating orbit; null for motion along the radius vector.", |orbit| {
+    orbit("eccentricity", "Eccentricity of the osculating orbit; null for motion along the radius vector.", |orbit| {
         Some(orbit.elements.eccentricity)
     }),
     orbit_turn(
         "inclination",
-        "Of the osculating orbit against the equator, in [0, π]; null for motion along the radius vector.",
+        "Inclination of the osculating orbit to the equator, in [0, π]; null for motion along the radius vector.",
         |orbit| Some(orbit.elements.inclination),
     ),
     orbit_turn(
         "raan",
-        "The right ascension of the ascending node of the osculating orbit, in [0, 2π), in the inertial frame of date: \
-         that of /convert, from which the planet is turned by the sidereal time; null for an orbit in the equator, and \
-         for motion along the radius vector.",
+        "Right ascension of the ascending node of the osculating orbit, in [0, 2π), in the inertial frame of date as \
+         in /convert, from which the planet is rotated by the sidereal time; null for an equatorial orbit, and for \
+         motion along the radius vector.",
         |orbit| Some(orbit.elements.raan).filter(|_| !orbit.undefined.equatorial),
     ),
     orbit_turn(
         "argument_of_periapsis",
-        "Of the osculating orbit, from the ascending node, in [0, 2π); for an orbit in the equator from the inertial x \
-         axis in the direction of motion; null for a circle, and for motion along the radius vector.",
+        "Argument of periapsis of the osculating orbit, from the ascending node, in [0, 2π); for an equatorial orbit, \
+         from the inertial x axis in the direction of motion; null for a circular orbit, and for motion along the \
+         radius vector.",
         |orbit| Some(orbit.elements.argument_of_periapsis).filter(|_| !orbit.undefined.circular),
     ),
     orbit_turn(
         "true_anomaly",
-        "On the osculating orbit, from the periapsis, in [0, 2π); on a circle from the ascending node, or where there \
-         is none from the inertial x axis; null for motion along the radius vector.",
+        "True anomaly on the osculating orbit, from the periapsis, in [0, 2π); for a circular orbit, from the \
+         ascending node or, if that is undefined, from the inertial x axis; null for motion along the radius vector.",
         |orbit| Some(orbit.elements.true_anomaly),
     ),
     orbit(
         "apoapsis_altitude",
-        "Of the apoapsis of the osculating orbit above the equatorial radius, m; null for an unbound orbit, and for \
+        "Apoapsis altitude of the osculating orbit above the equatorial radius, m; null for an unbound orbit, and for \
          motion along the radius vector.",
         |orbit| orbit.elements.apoapsis_radius().map(|radius| radius - orbit.equatorial_radius),
     ),
     orbit(
         "periapsis_altitude",
-        "Of the periapsis of the osculating orbit above the equatorial radius, m: negative where the orbit leads into \
+        "Periapsis altitude of the osculating orbit above the equatorial radius, m; negative if the orbit intersects \
          the planet; null for motion along the radius vector.",
         |orbit| Some(orbit.elements.periapsis_radius() - orbit.equatorial_radius),
     ),
     Column {
         on_request: true,
         requirement: Requirement::Thrust,
-        ..column("thrust", "Its magnitude, N, 0 while it is off; where an event switches it on.", |point| point.thrust)
+        ..column(
+            "thrust",
+            "Magnitude of the thrust, N; 0 while it is off; present if an event switches it on.",
+            |point| point.thrust,
+        )
     },
 ];
 
 /// Says once what an osculating orbit is.
-const SEMI_MAJOR_AXIS: &str = "Of the osculating orbit, m: that on which the vehicle would go on from here under the \
-                               gravity of a point alone, with the gravitational parameter of /convert. Negative for a \
-                               hyperbola; null for a parabola, and for motion along the radius vector.";
+const SEMI_MAJOR_AXIS: &str = "Semi-major axis of the osculating orbit, m: the orbit that the vehicle would follow \
+                               from here under the gravity of a point mass alone, with the gravitational parameter of \
+                               /convert. Negative for a hyperbola; null for a parabola, and for motion along the \
+                               radius vector.";
 
 /// The compass direction of the heading, in [0, 2π); 0 where there is none, at rest and in vertical flight.
 fn azimuth(point: &FlightPoint) -> f64 {
@@ -333,13 +362,13 @@ impl Column {
     pub fn missing(&self, available: AvailableQuantities) -> Option<&'static str> {
         match self.requirement {
             Requirement::Temperature if !available.temperature => {
-                Some("an atmosphere that has a temperature: us76, or a table with one")
+                Some("an atmosphere with a temperature: us76, or a table with temperature")
             }
             Requirement::SpeedOfSound if !available.speed_of_sound => {
-                Some("an atmosphere that has a speed of sound: us76, or a table with temperature or speed_of_sound")
+                Some("an atmosphere with a speed of sound: us76, or a table with temperature or speed_of_sound")
             }
             Requirement::Pressure if !available.pressure => {
-                Some("an atmosphere that has a pressure: us76, or a table with one")
+                Some("an atmosphere with a pressure: us76, or a table with pressure")
             }
             Requirement::Epoch if available.epoch.is_none() => Some("an epoch"),
             Requirement::Heating if !available.heating => Some("heating"),
@@ -437,7 +466,7 @@ impl Serialize for Row {
 
 impl PartialSchema for Row {
     fn schema() -> RefOr<Schema> {
-        let object = ObjectBuilder::new().description(Some("The state and the loads at an instant."));
+        let object = ObjectBuilder::new().description(Some("State and loads at one instant."));
         let with = |object: ObjectBuilder, column: &Column| {
             let object = object.property(column.name, column.schema().description(Some(column.description)));
             if column.requirement == Requirement::Nothing { object.required(column.name) } else { object }
@@ -465,8 +494,9 @@ impl Serialize for Columns {
 
 impl PartialSchema for Columns {
     fn schema() -> RefOr<Schema> {
-        let description = "The trajectory: one array a quantity, all of one length, time strictly increasing. \
-                           With `output.columns` those alone; some are given only there.";
+        let description = "Trajectory: one array per quantity, all of the same length; time is strictly increasing. \
+                           With `output.columns`, it has only the named columns; some columns are given only if \
+                           named.";
         let object = ObjectBuilder::new().description(Some(description));
         let with = |object: ObjectBuilder, column: &Column| {
             let array = ArrayBuilder::new().items(column.schema()).description(Some(column.description));

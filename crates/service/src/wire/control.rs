@@ -13,44 +13,45 @@ use super::schema::{bounds, is};
 /// What a schedule runs along.
 const AGAINST: Words<Against> = Words {
     name: "Against",
-    doc: "What a schedule runs along.",
+    doc: "Independent variable of a schedule.",
     words: &[
-        word("time", Against::Time, "Time, s").unit("s").doc("Since the start, s."),
-        word("altitude", Against::Altitude, "Altitude, m").unit("m").doc("Along the radius vector, m."),
-        word("speed", Against::Speed, "Speed, m/s").unit("m/s").doc("Relative to the rotating planet, m/s."),
+        word("time", Against::Time, "Time, s").unit("s").doc("Time since the start, s."),
+        word("altitude", Against::Altitude, "Altitude, m").unit("m").doc("Altitude along the radius vector, m."),
+        word("speed", Against::Speed, "Speed, m/s").unit("m/s").doc("Speed relative to the rotating planet, m/s."),
         word("mach", Against::Mach, "Mach number")
-            .doc("The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound."),
+            .doc("Mach number: air speed over speed of sound. The atmosphere must have a speed of sound."),
     ],
 };
 
 /// What a schedule does between its entries.
 const INTERPOLATION: Words<Interpolation> = Words {
     name: "Interpolation",
-    doc: "What a schedule does between its entries.",
+    doc: "Interpolation between the entries of a schedule.",
     words: &[
-        word("linear", Interpolation::Linear, "Straight lines").doc("Straight lines."),
-        word("step", Interpolation::Step, "Steps").doc("An entry's value holds from it up to the next greater one."),
+        word("linear", Interpolation::Linear, "Linear").doc("Linear interpolation."),
+        word("step", Interpolation::Step, "Steps").doc("Each value holds from its entry up to the next greater one."),
     ],
 };
 
 /// An angle, or a schedule of it.
 const COMMAND: AngleOrObject = AngleOrObject {
     name: "Command",
-    doc: "An angle during the flight: a number, or a schedule.",
-    angle: "The same all the time, within ±2π (±360°).",
+    doc: "Angle during the flight: a constant or a schedule.",
+    angle: "Constant angle, within ±2π (±360°).",
     object: "an object with a schedule",
 };
 
 /// How the vehicle is flown.
 pub(super) fn control(object: &mut Object) -> Option<Control> {
-    object.named("Control", "How the vehicle is flown: each angle a number, or by a schedule.");
+    object.named("Control", "Bank angle and angle of attack during the flight; each is a constant or a schedule.");
     let bank_angle = command(object.field("bank_angle", "Bank angle").doc(
-        "0: lift upward in the plane of radius and velocity; positive tilts it to the left of the flight direction.",
+        "Bank angle. At 0, lift points upward in the plane of radius and velocity; a positive angle tilts it to the \
+         left of the flight direction.",
     ));
     let angle_of_attack = command(
         object
             .field("angle_of_attack", "Angle of attack")
-            .doc("On which the coefficients of an `alpha_mach_table` depend, and no other."),
+            .doc("Angle of attack. Only the coefficients of an `alpha_mach_table` depend on it."),
     );
     Some(Control { bank_angle: bank_angle?, angle_of_attack: angle_of_attack? })
 }
@@ -68,13 +69,14 @@ pub(super) fn is_given(command: &Command) -> bool {
 fn schedule(object: &mut Object) -> Option<Schedule> {
     object.named(
         "Schedule",
-        "An angle along a quantity of the flight; before the first entry and after the last their values hold. Both lists have as many.",
+        "Angle as a function of a quantity of the flight. Before the first entry and after the last, their values \
+         hold. Both lists must have the same length.",
     );
-    object.of_type("schedule", "`schedule`, which tells it from a number.", entries)
+    object.of_type("schedule", "Always `schedule`.", entries)
 }
 
 fn entries(object: &mut Object) -> Option<Schedule> {
-    let against = object.field("against", "Against").doc("What it runs along.").word(&AGAINST);
+    let against = object.field("against", "Against").doc("Independent variable of the schedule.").word(&AGAINST);
     let bound = match against {
         Some(Against::Altitude) => Bound::DISTANCE,
         Some(Against::Time | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
@@ -82,7 +84,10 @@ fn entries(object: &mut Object) -> Option<Schedule> {
     };
     let at = object
         .field("at", "At")
-        .doc("Ascending, in the unit of the quantity; time, speed and Mach number at least 0.")
+        .doc(
+            "Values of the independent variable, ascending, in its unit. Time, speed and Mach number must be at least \
+             0.",
+        )
         .unit(against.map_or("", |against| AGAINST.unit_of(against)))
         .ascending()
         .numbers(bound, [1, MOST_ENTRIES]);
@@ -90,12 +95,14 @@ fn entries(object: &mut Object) -> Option<Schedule> {
         let at = |bound| json!({"properties": {"at": {"items": bounds(bound)}}});
         json!({"if": is("against", "altitude"), "then": at(Bound::DISTANCE), "else": at(Bound::NON_NEGATIVE)})
     });
-    let value =
-        object.field("value", "Angle").doc("The angles there, within ±2π (±360°).").angles(Bound::TURN, MOST_ENTRIES);
+    let value = object
+        .field("value", "Angle")
+        .doc("Angles at these values, within ±2π (±360°).")
+        .angles(Bound::TURN, MOST_ENTRIES);
     let sound = object.equally_long("at", &["value"]);
     let interpolation = object
-        .field("interpolation", "In between")
-        .doc("What it does between its entries.")
+        .field("interpolation", "Interpolation")
+        .doc("Interpolation between the entries.")
         .default("linear")
         .word(&INTERPOLATION);
     let (against, at, value, interpolation) = (against?, at?, value?, interpolation?);

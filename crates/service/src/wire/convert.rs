@@ -31,22 +31,26 @@ pub struct ConvertRequest {
 
 /// A request of `/convert`.
 pub fn convert_request(object: &mut Object) -> Option<ConvertRequest> {
-    object.named("ConvertRequest", "A state to convert. SI units; angles in `angle_unit`.");
+    object.named("ConvertRequest", "State to convert. SI units; angles are in `angle_unit`.");
     let has_unit = object.has("angle_unit");
     let angle_unit = angle_unit(object);
     let echo = object
-        .field("echo", "Repeat the case in the answer")
-        .doc("Whether the answer repeats the request, with every default filled in, as `case`.")
+        .field("echo", "Echo the case")
+        .doc("Whether the response contains the request with all defaults filled in, as `case`.")
         .default(false)
         .boolean();
-    let planet = object.field("planet", "Planet").doc("The planet.").default(json!({})).object(planet);
+    let planet =
+        object.field("planet", "Planet").doc("Planet: shape, gravity and rotation.").default(json!({})).object(planet);
     let epoch = epoch(
         object,
-        "The instant of the state: an RFC 3339 time. On the Earth it gives the angle to the inertial frame, where the state gives none; on a \
-         custom planet it gives none.",
+        "Time of the state in RFC 3339 format. On the Earth it defines the angle between the inertial and the \
+         planet-fixed frame, unless the state gives that angle. On a custom planet it does not define the angle.",
     );
     let has_epoch = object.has("epoch");
-    let state = object.field("state", "State").doc("The state.").object(|object| state(object, has_epoch));
+    let state = object
+        .field("state", "State")
+        .doc("State to convert, in one of six coordinate systems.")
+        .object(|object| state(object, has_epoch));
     inertial_conditions(object, "state");
     let assumes_angle_unit = !has_unit && object.turns();
     Some(ConvertRequest {
@@ -59,16 +63,16 @@ pub fn convert_request(object: &mut Object) -> Option<ConvertRequest> {
     })
 }
 
-/// The state in every coordinate system; each can be sent back as it is.
+/// The state in all coordinate systems; each representation can be sent back unchanged.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct ConvertResponse {
-    /// The unit of every angle.
+    /// Unit of every angle in the response.
     #[schema(value_type = names::AngleUnit)]
     pub angle_unit: AngleUnit,
-    /// Against the geocentric horizontal.
+    /// Position and velocity relative to the rotating planet, measured from the geocentric horizontal.
     #[schema(value_type = names::PlanetRelative)]
     pub planet_relative: Value,
-    /// Against the geodetic horizontal.
+    /// Position and velocity relative to the rotating planet, measured from the geodetic horizontal.
     #[schema(value_type = names::Geodetic)]
     pub geodetic: Value,
     /// Planet-fixed vectors.
@@ -77,38 +81,40 @@ pub struct ConvertResponse {
     /// Inertial vectors.
     #[schema(value_type = names::Eci)]
     pub eci: Value,
-    /// The orbit; null for motion towards or away from the planet's centre, which has no elements.
+    /// Orbital elements; null for motion along the radius vector, which has none.
     #[schema(value_type = Option<names::OrbitalElements>)]
     pub orbital_elements: Option<Value>,
-    /// Speed and angles of the inertial velocity, against the geocentric horizontal.
+    /// Position relative to the rotating planet and inertial velocity, measured from the geocentric horizontal.
     #[schema(value_type = names::InertialFlightPath)]
     pub inertial_flight_path: Value,
-    /// What follows from the state.
+    /// Quantities derived from the state.
     pub derived: Derived,
-    /// What the user should know.
+    /// Warnings about the request.
     pub warnings: Vec<Warning>,
-    /// The request with every default filled in, with `echo`: it can be sent again.
+    /// Request with all defaults filled in, which can be sent again; present with `echo`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = names::ConvertRequest)]
     pub case: Option<Value>,
 }
 
-/// What follows from a state; its angles are in the unit of the answer.
+/// Quantities derived from a state; angles are in the unit of the response.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Derived {
-    /// Height above the planet's shape along the radius vector, m.
+    /// Altitude above the planet's surface along the radius vector, m.
     pub altitude: f64,
-    /// m; null where the state has no orbital elements.
+    /// Semi-latus rectum, m; null if the state has no orbital elements.
     pub semi_latus_rectum: Option<f64>,
-    /// Distance of the periapsis from the centre, m; null where the state has no orbital elements.
+    /// Distance of the periapsis from the planet's centre, m; null if the state has no orbital elements.
     pub periapsis_radius: Option<f64>,
-    /// Distance of the apoapsis from the centre, m; null for an unbound orbit, or where the state has no orbital elements.
+    /// Distance of the apoapsis from the planet's centre, m; null for an unbound orbit, or if the state has no orbital
+    /// elements.
     pub apoapsis_radius: Option<f64>,
-    /// The mean anomaly, in [0, 2π); null for an unbound orbit, or where the state has no orbital elements.
+    /// Mean anomaly, in [0, 2π); null for an unbound orbit, or if the state has no orbital elements.
     pub mean_anomaly: Option<f64>,
-    /// Half the squared inertial speed less the gravitational parameter over the radius, J/kg.
+    /// Specific orbital energy: half the squared inertial speed minus the gravitational parameter over the radius,
+    /// J/kg.
     pub specific_energy: f64,
-    /// The time of one revolution, s; null for an unbound orbit, or where the state has no orbital elements.
+    /// Orbital period, s; null for an unbound orbit, or if the state has no orbital elements.
     pub period: Option<f64>,
 }
 

@@ -37,23 +37,24 @@ struct Normal {
 pub(super) fn dispersion(object: &mut Object) -> Option<Dispersion> {
     object.named(
         "Dispersion",
-        "A number of the case that scatters: what is added to it (`offset`), or by what it is multiplied (`factor`). The numbers of a list move \
-         together.",
+        "Uncertain number of the case: a random variable is added to it (`offset`) or multiplies it (`factor`). The \
+         numbers of a list vary together.",
     );
     let pointers = object
         .field("pointer", "Number")
         .doc(
-            "The JSON pointer of a number in the case, or of a list of numbers, which move together; for a multivariate distribution \
-             one for each variable.",
+            "JSON pointer of a number of the case, or of a list of numbers, which vary together. A multivariate \
+             distribution takes one pointer per variable.",
         )
         .text_or_texts(MOST_VARIED);
     let offset = |object: &mut Object| {
-        let field =
-            object.field("offset", "Offset").doc("The distribution of what is added, in the unit of the number.");
+        let field = object
+            .field("offset", "Offset")
+            .doc("Distribution of the variable that is added, in the unit of the number.");
         Some((Change::Offset, field.object(distribution)?))
     };
     let factor = |object: &mut Object| {
-        let field = object.field("factor", "Factor").doc("The distribution of the factor.");
+        let field = object.field("factor", "Factor").doc("Distribution of the factor.");
         Some((Change::Factor, field.object(distribution)?))
     };
     let changed = object.alternatives(&[("offset", &offset), ("factor", &factor)]);
@@ -68,40 +69,45 @@ pub(super) fn dispersion(object: &mut Object) -> Option<Dispersion> {
 }
 
 fn distribution(object: &mut Object) -> Option<Normal> {
-    object.named("NormalDistribution", "A normal distribution, of one variable or of several.");
+    object.named("NormalDistribution", "Normal distribution of one or several variables.");
     object.variants(
-        "The kind of distribution.",
+        "Kind of distribution.",
         &[
-            variant("normal", "Normal", "Of one variable.", &normal),
-            variant("multivariate_normal", "Multivariate normal", "Of several variables.", &multivariate_normal),
+            variant("normal", "Normal", "Normal distribution of one variable.", &normal),
+            variant(
+                "multivariate_normal",
+                "Multivariate normal",
+                "Normal distribution of several variables.",
+                &multivariate_normal,
+            ),
         ],
     )
 }
 
 fn normal(object: &mut Object) -> Option<Normal> {
-    object.named("Normal", "The normal distribution of one variable.");
+    object.named("Normal", "Normal distribution of one variable.");
     let mean = object
         .field("mean", "Mean")
-        .doc("Its mean; without it 0 of an offset, and 1 of a factor.")
+        .doc("Mean; the default is 0 for an offset and 1 for a factor.")
         .optional()
         .number(Bound::MEAN);
     let deviation = object
         .field("standard_deviation", "Standard deviation")
-        .doc("Its standard deviation.")
+        .doc("Standard deviation, in the unit of the variable.")
         .number(Bound::STANDARD_DEVIATION)?;
     Some(Normal { mean: mean.map(|mean| vec![mean]), covariance: vec![vec![deviation * deviation]] })
 }
 
 fn multivariate_normal(object: &mut Object) -> Option<Normal> {
-    object.named("MultivariateNormal", "The normal distribution of several variables, one for each pointer.");
+    object.named("MultivariateNormal", "Normal distribution of several variables, one per pointer.");
     let mean = object
         .field("mean", "Means")
-        .doc("Its means; without them 0 of offsets, and 1 of factors.")
+        .doc("Means; the default is 0 for offsets and 1 for factors.")
         .optional()
         .numbers(Bound::MEAN, [1, MOST_VARIED]);
     let covariance = object
         .field("covariance", "Covariance")
-        .doc("Its covariance, row by row: symmetric, with no negative eigenvalue.")
+        .doc("Covariance matrix, row by row; symmetric, without negative eigenvalues.")
         .matrix(Bound::COVARIANCE, "covariance");
     let covariance = covariance?;
     let count = covariance.len();
@@ -109,7 +115,8 @@ fn multivariate_normal(object: &mut Object) -> Option<Normal> {
         let [here, there] = [covariance[row][column], covariance[column][row]];
         if (here - there).abs() > ROUNDING * (here.abs() + there.abs()) {
             let detail = format!(
-                "must be that of row {column} and column {row}, {there}: a covariance is symmetric; got {here}"
+                "must equal the element in row {column} and column {row}, {there}: a covariance is symmetric; got \
+                 {here}"
             );
             object.fault_of(&format!("covariance/{row}/{column}"), detail);
             return None;
@@ -117,7 +124,8 @@ fn multivariate_normal(object: &mut Object) -> Option<Normal> {
     }
     let least = least_eigenvalue(&covariance);
     if least.is_nan() || least < -ROUNDING {
-        let detail = format!("must have no negative eigenvalue: the least one of its correlations is {least:.3e}");
+        let detail =
+            format!("must have no negative eigenvalue: the least eigenvalue of its correlation matrix is {least:.3e}");
         object.fault_of("covariance", detail);
         return None;
     }
@@ -193,45 +201,46 @@ impl Dispersion {
     }
 }
 
-/// How far the end of the flight scatters where numbers of the case do, to first order.
+/// Scatter of the end of the flight caused by `dispersions`, to first order.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Covariance {
-    /// Where the flight ends, on the ground.
+    /// Scatter of the end point on the ground.
     pub landing: Landing,
-    /// The standard deviations of the final columns; null where a slope has none.
+    /// Standard deviations of the columns of the final state, in their units; null where a derivative is undefined.
     #[schema(value_type = std::collections::BTreeMap<String, Option<f64>>)]
     pub standard_deviations: Map<String, Value>,
-    /// What each of the dispersions gives, in their order.
+    /// Contributions of the dispersions, in the order of the request.
     pub dispersions: Vec<Contribution>,
 }
 
-/// Where the flight ends on the ground, relative to where it ends without dispersions.
+/// Scatter of the end point on the ground, relative to the end point without dispersions.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Landing {
-    /// The semi-major axis of the ellipse of one standard deviation, m. It holds 39 % of the flights; 2.45 times its axes hold 95 %, 3.44 times 99.73 %.
+    /// Semi-major axis of the 1σ ellipse, m. The ellipse contains 39 % of the flights; 2.45 times its axes contain 95
+    /// %, 3.44 times 99.73 %. Null where a derivative is undefined.
     #[schema(required = true)]
     pub semi_major_axis: Option<f64>,
-    /// Its semi-minor axis, m.
+    /// Semi-minor axis of the 1σ ellipse, m; null where a derivative is undefined.
     #[schema(required = true)]
     pub semi_minor_axis: Option<f64>,
-    /// The direction of the major axis, clockwise from north, in [0, π).
+    /// Direction of the major axis, clockwise from north, in [0, π); null where a derivative is undefined.
     #[schema(required = true)]
     pub azimuth: Option<f64>,
-    /// The covariance of east and north, row by row, m².
+    /// Covariance matrix of the east and north coordinates of the end point, row by row, m².
     pub covariance: Vec<Vec<Option<f64>>>,
-    /// How far the means of the dispersions move the end, to the east and to the north, m.
+    /// Shift of the end point caused by the means of the dispersions, east and north, m.
     pub shift: Vec<Option<f64>>,
 }
 
-/// What a dispersion gives.
+/// Contribution of one dispersion.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Contribution {
-    /// The pointers of its numbers.
+    /// JSON pointers of its numbers.
     pub pointers: Vec<String>,
-    /// Its share of the variance of the landing, east and north together.
+    /// Fraction of the variance of the end point, east and north together, from 0 to 1; null where undefined.
     #[schema(required = true)]
     pub share: Option<f64>,
-    /// Its share of the variance of each of the final columns that scatter.
+    /// Fraction of the variance of each column of the final state that scatters, from 0 to 1.
     #[schema(value_type = std::collections::BTreeMap<String, f64>)]
     pub shares: Map<String, Value>,
 }

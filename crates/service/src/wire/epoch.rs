@@ -22,13 +22,13 @@ pub struct SiderealTime(pub f64);
 /// The schema of what [`SiderealTime::read`] reads.
 pub fn sidereal_time_schema() -> Value {
     let mut seconds = schema::number(Bound::SIDEREAL_TIME);
-    seconds["description"] = json!("Seconds; answers give these.");
+    seconds["description"] = json!("Time in seconds; responses use this form.");
     let clock = json!({
         "type": "string",
-        "description": "`HH:MM:SS.s`, the hours with two digits or more, up to 1e9 s.",
+        "description": "`HH:MM:SS.s`, with two or more digits of hours, up to 1e9 s.",
         "pattern": CLOCK_PATTERN,
     });
-    let doc = "The time since the inertial and the planet-fixed frame were aligned.";
+    let doc = "Time since the inertial and the planet-fixed frame were aligned.";
     json!({"oneOf": [seconds, clock], "description": doc})
 }
 
@@ -133,7 +133,7 @@ impl Epoch {
         let text = text.ok_or_else(|| fault("such as \"2026-11-22T12:00:00Z\""))?;
         let instant = text
             .instant()
-            .ok_or_else(|| fault("whose second is 60 in a leap second alone, such as \"2016-12-31T23:59:60Z\""))?;
+            .ok_or_else(|| fault("whose second is 60 only in a leap second, such as \"2016-12-31T23:59:60Z\""))?;
         let has_four_digits = Date::after_2000(instant.day).is_some();
         has_four_digits.then_some(instant).ok_or_else(|| fault("whose year in UTC is from 0000 to 9999"))
     }

@@ -56,57 +56,57 @@ pub struct Effect {
 /// The quantities of conditions.
 pub static QUANTITIES: Words<Quantity> = Words {
     name: "Quantity",
-    doc: "What may pass a value.",
+    doc: "Quantity that crosses a value.",
     words: &[
-        word("time", Quantity::Time, "Time, s").unit("s").doc("Since the start, s."),
-        word("altitude", Quantity::Altitude, "Altitude, m").unit("m").doc("Along the radius vector, m."),
-        word("speed", Quantity::Speed, "Speed, m/s").unit("m/s").doc("Relative to the rotating planet, m/s."),
+        word("time", Quantity::Time, "Time, s").unit("s").doc("Time since the start, s."),
+        word("altitude", Quantity::Altitude, "Altitude, m").unit("m").doc("Altitude along the radius vector, m."),
+        word("speed", Quantity::Speed, "Speed, m/s").unit("m/s").doc("Speed relative to the rotating planet, m/s."),
         word("mach", Quantity::Mach, "Mach number")
-            .doc("The speed relative to the air over that of sound; needs an atmosphere that has a speed of sound."),
+            .doc("Mach number: air speed over speed of sound. The atmosphere must have a speed of sound."),
         word("dynamic_pressure", Quantity::DynamicPressure, "Dynamic pressure, Pa")
             .unit("Pa")
-            .doc("½ρV² of the speed relative to the air, Pa."),
+            .doc("Dynamic pressure ½ρV² with the air speed V, Pa."),
         word("load_factor", Quantity::LoadFactor, "Load factor, g")
-            .doc("Lift, drag and thrust over mass and 9.80665 m/s²."),
+            .doc("Load factor: resultant of lift, drag and thrust over mass and 9.80665 m/s²."),
         word("flight_path_angle", Quantity::FlightPathAngle, "Flight-path angle")
             .unit(ANGLE)
-            .doc("Of the velocity relative to the planet."),
-        word("mass", Quantity::Mass, "Mass, kg").unit("kg").doc("Of the vehicle, kg."),
-        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").unit("m/s").doc("Relative to the air, m/s."),
+            .doc("Angle of the velocity relative to the rotating planet above the plane normal to the radius."),
+        word("mass", Quantity::Mass, "Mass, kg").unit("kg").doc("Mass of the vehicle, kg."),
+        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").unit("m/s").doc("Speed relative to the air, m/s."),
         word("inertial_speed", Quantity::InertialSpeed, "Inertial speed, m/s")
             .unit("m/s")
-            .doc("Relative to inertial space, m/s."),
+            .doc("Speed relative to inertial space, m/s."),
         word("specific_energy", Quantity::SpecificEnergy, "Specific energy, J/kg")
             .unit("J/kg")
-            .doc("Half the squared inertial speed and the potential of gravity, J/kg."),
-        word("apoapsis_altitude", Quantity::ApoapsisAltitude, "Apoapsis altitude, m")
-            .unit("m")
-            .doc("Of the osculating orbit, above the equatorial radius, m; 1e13 m where it is not bound."),
+            .doc("Half the squared inertial speed plus the gravitational potential, J/kg."),
+        word("apoapsis_altitude", Quantity::ApoapsisAltitude, "Apoapsis altitude, m").unit("m").doc(
+            "Apoapsis altitude of the osculating orbit above the equatorial radius, m; 1e13 m for an unbound orbit.",
+        ),
         word("periapsis_altitude", Quantity::PeriapsisAltitude, "Periapsis altitude, m")
             .unit("m")
-            .doc("Of the osculating orbit, above the equatorial radius, m."),
+            .doc("Periapsis altitude of the osculating orbit above the equatorial radius, m."),
         word("inclination", Quantity::Inclination, "Inclination")
             .unit(ANGLE)
-            .doc("Of the osculating orbit to the equator."),
+            .doc("Inclination of the osculating orbit to the equator."),
         word("heat_flux", Quantity::HeatFlux, "Heat flux, W/m²")
             .unit("W/m²")
-            .doc("Into the stagnation point, W/m²; needs heating."),
+            .doc("Heat flux into the stagnation point, W/m². It requires `heating`."),
         word("heat_load", Quantity::HeatLoad, "Heat load, J/m²")
             .unit("J/m²")
-            .doc("Into the stagnation point since the start, J/m²; needs heating."),
+            .doc("Heat load of the stagnation point since the start, J/m². It requires `heating`."),
         word("wall_temperature", Quantity::WallTemperature, "Wall temperature, K")
             .unit("K")
-            .doc("At which the wall radiates as much as it gets, K; needs heating."),
+            .doc("Radiative equilibrium temperature of the wall, K. It requires `heating`."),
         word("downrange", Quantity::Downrange, "Downrange, m")
             .unit("m")
-            .doc("Along the great circle of the initial heading, m; needs an initial heading."),
+            .doc("Distance along the great circle of the initial heading, m. The initial state must have a heading."),
         word("ground_range", Quantity::GroundRange, "Ground range, m")
             .unit("m")
             .doc("Great-circle distance from the initial ground point, m."),
         word("deceleration", Quantity::Deceleration, "Deceleration, m/s²")
             .unit("m/s²")
-            .doc("-dV/dt of the speed relative to the planet, m/s²."),
-        word("density", Quantity::Density, "Density, kg/m³").unit("kg/m³").doc("Of the air, kg/m³."),
+            .doc("Deceleration -dV/dt of the speed relative to the rotating planet, m/s²."),
+        word("density", Quantity::Density, "Density, kg/m³").unit("kg/m³").doc("Density of the air, kg/m³."),
     ],
 };
 
@@ -114,14 +114,21 @@ pub static QUANTITIES: Words<Quantity> = Words {
 pub(super) fn event(object: &mut Object) -> Option<Event> {
     object.named(
         "Event",
-        "Something that happens once: at the first instant at which its condition is met, and never again. Events of one instant happen in the order \
-         of their list, each on what the ones before it have made.",
+        "Event that happens once, at the first instant at which its condition is met. Events at the same instant \
+         happen in the order of the list; each acts on the result of the previous ones.",
     );
-    let name = object.field("name", "Name").doc("Given back in the answer.").optional().text();
-    let when = object.field("when", "When").doc("When.").object(condition);
+    let name = object
+        .field("name", "Name")
+        .doc("Name of the event; returned in the response. Conditions refer to the event by it.")
+        .optional()
+        .text();
+    let when = object.field("when", "When").doc("Condition that triggers the event.").object(condition);
     let then = object
         .field("then", "Then")
-        .doc("What it changes; without anything it is a mark, whose state the answer tells.")
+        .doc(
+            "Changes that the event makes. An event without changes only marks an instant; the response gives the \
+             state there.",
+        )
         .default(json!({}))
         .object(effect);
     Some(Event { name, when: when?, then: then? })
@@ -131,17 +138,18 @@ pub(super) fn event(object: &mut Object) -> Option<Event> {
 pub(super) fn condition(object: &mut Object) -> Option<Condition> {
     object.named(
         "Condition",
-        "A quantity passes a value, downwards or upwards, or so much time has passed since another event.\n\nA condition on a quantity is met at the \
-         first instant at which the quantity, having been on the near side, is on the value or beyond, whether it moved there or jumped, as the load \
-         factor does where a parachute opens. A quantity that begins on the value meets it at once if it moves on to the far side, however slowly; \
-         one that begins beyond must come back first.",
+        "Crossing of a value by a quantity, downwards or upwards, or a delay after another event.\n\nA condition on a \
+         quantity is met the first time the quantity crosses the value in the given direction, whether continuously \
+         or in a jump (the load factor jumps when a parachute opens). If the quantity starts at the value, the \
+         condition is met as soon as it moves in that direction, however slowly. If it starts past the value, it must \
+         first return.",
     );
     object.alternatives(&[("quantity", &crossing), ("event", &after)])
 }
 
 fn crossing(object: &mut Object) -> Option<Condition> {
     let quantity =
-        object.field("quantity", "Quantity").doc("Which quantity passes the value.").optional().word(&QUANTITIES);
+        object.field("quantity", "Quantity").doc("Quantity that crosses the value.").optional().word(&QUANTITIES);
     let mut value = |name, title, doc| {
         let field = object.field(name, title).doc(doc).optional();
         match quantity {
@@ -154,12 +162,13 @@ fn crossing(object: &mut Object) -> Option<Condition> {
     let falling = value(
         "falls_through",
         "falls through",
-        "The value, from above, in the unit of the quantity; an angle in `angle_unit`. Not for time.",
+        "Value that the quantity crosses downwards, in its unit; an angle is in `angle_unit`. Not supported for \
+         `time`.",
     );
     let rising = value(
         "rises_through",
         "rises through",
-        "The value, from below, in the unit of the quantity; an angle in `angle_unit`.",
+        "Value that the quantity crosses upwards, in its unit; an angle is in `angle_unit`.",
     );
     object.exactly_one(&["falls_through", "rises_through"]);
     object.condition(|| json!({"if": is("quantity", "time"), "then": {"properties": {"falls_through": false}}}));
@@ -179,12 +188,12 @@ fn crossing(object: &mut Object) -> Option<Condition> {
 fn after(object: &mut Object) -> Option<Condition> {
     let event = object
         .field("event", "or after the event")
-        .doc("The name of another event, which happens before.")
+        .doc("Name of another event; the condition is met `delay` seconds after it.")
         .optional()
         .text();
     let delay = object
         .field("delay", "Delay after it")
-        .doc("Seconds after that event.")
+        .doc("Time after that event, s.")
         .unit("s")
         .default(0.0)
         .number(Bound::TIME);
@@ -194,38 +203,47 @@ fn after(object: &mut Object) -> Option<Condition> {
 /// What an event changes.
 #[expect(clippy::unnecessary_wraps, reason = "the descriptions of objects have one type")]
 fn effect(object: &mut Object) -> Option<Effect> {
-    object.named("Effect", "What an event changes, from its instant on; what is left out stays as it is.");
+    object.named("Effect", "Changes that an event makes, from its instant on. Omitted fields stay unchanged.");
     let mass = object
-        .field("mass", "Mass becomes")
-        .doc("kg. A ballistic coefficient changes with it: the drag area stays.")
+        .field("mass", "New mass")
+        .doc("Mass after the event, kg. A ballistic coefficient changes in proportion: the drag area stays unchanged.")
         .unit("kg")
         .optional()
         .number(Bound::POSITIVE);
     let reference_area = object.only_unless("aerodynamics/type", "ballistic", |object| {
         object
-            .field("reference_area", "Reference area becomes")
-            .doc("m². Not beside ballistic aerodynamics, nor where the vehicle has them and no event gives others.")
+            .field("reference_area", "New reference area")
+            .doc(
+                "Reference area after the event, m². Not supported with ballistic aerodynamics, nor if the vehicle \
+                 has them and no event replaces them.",
+            )
             .unit("m²")
             .optional()
             .number(Bound::NON_NEGATIVE)
     });
-    let aerodynamics =
-        object.field("aerodynamics", "Aerodynamics become").doc("Lift and drag.").optional().object(aerodynamics);
+    let aerodynamics = object
+        .field("aerodynamics", "New aerodynamics")
+        .doc("Lift and drag after the event.")
+        .optional()
+        .object(aerodynamics);
     let impulse = object
         .field("delta_v", "Impulse")
-        .doc("An impulsive change of velocity. It takes no propellant: give the mass after it as `mass`.")
+        .doc("Impulsive change of velocity. It consumes no propellant: set `mass` to the mass after it.")
         .optional()
         .object(impulse);
     let engine = object
         .field("thrust", "Thrust")
-        .doc("A constant thrust, which is switched on, or `\"off\"`.")
+        .doc("Constant thrust that the event switches on, or `\"off\"`.")
         .optional()
         .word_or(&THRUST_COMMAND, &OFF, |object| thrust(object).map(Engine::On));
     let parachute =
-        object.field("deploy", "Parachute").doc("A parachute that is deployed.").optional().object(parachute);
+        object.field("deploy", "Parachute").doc("Parachute that the event deploys.").optional().object(parachute);
     let released = object
         .field("release", "Release")
-        .doc("The names of parachutes that are cut off, before another is deployed. One that is not deployed then stays as it is, with a warning.")
+        .doc(
+            "Names of parachutes that the event cuts off, before it deploys another. For a parachute that is not \
+             deployed, the release has no effect and the response contains the warning `not_deployed`.",
+        )
         .optional()
         .texts(MOST_EVENTS);
     let (deployed, deploy) = parachute.unzip();
@@ -234,71 +252,83 @@ fn effect(object: &mut Object) -> Option<Effect> {
 }
 
 fn impulse(object: &mut Object) -> Option<Impulse> {
-    object.named("DeltaV", "A change of velocity at an instant.");
-    let along = along(object, "Where to.");
+    object.named("DeltaV", "Instantaneous change of velocity.");
+    let along = along(object, "Direction of the change.");
     let speed_change = object
         .field("value", "Change of speed")
-        .doc("m/s; negative against the direction, as a deorbit burn along the velocity is.")
+        .doc(
+            "Change of velocity along the direction, m/s. A negative value acts against the direction: a deorbit burn \
+             along the velocity is negative.",
+        )
         .unit("m/s")
         .number(Bound::VELOCITY);
     Some(Impulse { along: along?, speed_change: speed_change? })
 }
 
 /// What becomes of the thrust.
-const THRUST_COMMAND: WordOrObject =
-    WordOrObject { name: "ThrustCommand", doc: "What becomes of the thrust: another one, or `\"off\"`." };
+const THRUST_COMMAND: WordOrObject = WordOrObject { name: "ThrustCommand", doc: "New thrust, or `\"off\"`." };
 
-const OFF: Words<Engine> =
-    Words { name: "", doc: "The thrust is switched off.", words: &[word("off", Engine::Off, "")] };
+const OFF: Words<Engine> = Words { name: "", doc: "Switches the thrust off.", words: &[word("off", Engine::Off, "")] };
 
 fn thrust(object: &mut Object) -> Option<Thrust> {
     object.named(
         "Thrust",
-        "A constant thrust, switched on in place of one that burns. It ends where it is switched off, or where its propellant is spent.\n\nA thrust \
-         against the velocity that is greater than what else moves the vehicle brings it to rest, where it has no direction: switch it off before, \
-         or end the flight, for example where the speed falls through 0.",
+        "Constant thrust; it replaces a thrust that is on. It ends when an event switches it off, or when its \
+         propellant is spent.\n\nA thrust against the velocity that exceeds the other forces brings the vehicle to \
+         rest, where the thrust has no direction and the flight fails. Switch the thrust off before, or end the \
+         flight, for example where the speed falls through 0.",
     );
-    let along = along(object, "Where to, at every instant.");
+    let along = along(object, "Direction of the thrust.");
     let force = object
         .field("value", "Thrust")
-        .doc("N; negative against the direction, as a retro burn along the velocity is.")
+        .doc(
+            "Thrust along the direction, N. A negative value acts against the direction: a retro burn along the \
+             velocity is negative.",
+        )
         .unit("N")
         .number(Bound::FORCE);
     let burns = object.has("specific_impulse");
     let specific_impulse = object
         .field("specific_impulse", "Specific impulse")
-        .doc("s: the mass falls by |value|/(9.80665 m/s² `specific_impulse`) a second; without it, the mass stays.")
+        .doc(
+            "Specific impulse, s. The mass falls by |`value`|/(9.80665 m/s² `specific_impulse`) per second. Without \
+             it, the mass stays constant.",
+        )
         .unit("s")
         .optional()
         .number(Bound::SPECIFIC_IMPULSE);
     let propellant = object
         .field("propellant", "Propellant")
-        .doc("How much there is to burn, kg; without it, the thrust burns until it is switched off. Only with a `specific_impulse`.")
+        .doc(
+            "Mass of the propellant, kg; the thrust ends when it is spent. Without it, the thrust burns until it is \
+             switched off. It requires `specific_impulse`.",
+        )
         .unit("kg")
         .optional()
         .number(Bound::POSITIVE);
     object.condition(|| json!({"dependentRequired": {"propellant": ["specific_impulse"]}}));
     if propellant.is_some() && !burns {
-        object.fault_of("propellant", "must be left out: without specific_impulse the thrust burns none");
+        object.fault_of("propellant", "must be omitted: without specific_impulse the thrust consumes no propellant");
     }
     Some(Thrust { along: along?, force: force?, specific_impulse, propellant })
 }
 
 /// A direction that moves with the vehicle, or one that stays in inertial space.
-const ALONG: WordOrObject =
-    WordOrObject { name: "Along", doc: "Where to: by a word, or a direction that stays in inertial space." };
+const ALONG: WordOrObject = WordOrObject {
+    name: "Along",
+    doc: "Direction: a word for one that moves with the vehicle, or a vector fixed in inertial space.",
+};
 
 const AXES: Words<ThrustAxis> = Words {
     name: "Axis",
-    doc: "A direction that moves with the vehicle.",
+    doc: "Direction that moves with the vehicle.",
     words: &[
-        word("velocity", ThrustAxis::Velocity, "the velocity")
-            .doc("Along the velocity relative to the rotating planet."),
-        word("radial", ThrustAxis::Radial, "the radius, outwards").doc("Away from the planet's centre."),
-        word("normal", ThrustAxis::Normal, "the normal, left")
-            .doc("Across both, level, to the left of the flight direction."),
-        word("horizontal", ThrustAxis::Horizontal, "the velocity’s level part")
-            .doc("Along the level part of the velocity relative to the rotating planet."),
+        word("velocity", ThrustAxis::Velocity, "velocity").doc("Along the velocity relative to the rotating planet."),
+        word("radial", ThrustAxis::Radial, "radius, outward").doc("Away from the planet's centre."),
+        word("normal", ThrustAxis::Normal, "normal, left")
+            .doc("Horizontal and perpendicular to the velocity, to the left of the flight direction."),
+        word("horizontal", ThrustAxis::Horizontal, "horizontal velocity")
+            .doc("Along the horizontal component of the velocity relative to the rotating planet."),
     ],
 };
 
@@ -309,12 +339,13 @@ fn along(object: &mut Object, doc: &'static str) -> Option<ThrustAxis> {
 fn inertial_direction(object: &mut Object) -> Option<ThrustAxis> {
     object.named(
         "InertialDirection",
-        "A direction that stays in inertial space while the planet turns.\n\nIts components are those of the inertial frame of the initial state: \
-         the `frame` of `eci` vectors and of orbital elements, and for other states that of date, from which the planet is turned by the \
-         `sidereal_time`, the `sidereal_angle` or the `epoch`.",
+        "Direction fixed in inertial space.\n\nIts components are in the inertial frame of the initial state: the \
+         `frame` of `eci` vectors and of orbital elements; for other states, the frame of date, whose angle to the \
+         planet follows from `sidereal_time`, `sidereal_angle` or `epoch`.",
     );
-    object.field("frame", "Frame").doc("The frame.").constant("inertial");
-    let direction = object.field("direction", "Direction").doc("[x, y, z], of any length but 0.").vector(Bound::FINITE);
+    object.field("frame", "Frame").doc("Always `inertial`.").constant("inertial");
+    let direction =
+        object.field("direction", "Direction").doc("Components [x, y, z]; any length except 0.").vector(Bound::FINITE);
     object.refine("direction", || json!({"contains": {"not": {"const": 0}}}));
     let axis = ThrustAxis::inertial(direction?);
     if axis.is_none() {
@@ -327,27 +358,27 @@ fn inertial_direction(object: &mut Object) -> Option<ThrustAxis> {
 fn parachute(object: &mut Object) -> Option<(String, Parachute)> {
     object.named(
         "Parachute",
-        "A parachute, whose drag adds to that of the vehicle, along the velocity relative to the air: of several, all add up.\n\nIts drag area grows \
-         as `drag_area` (t/`inflation_time`)² while it fills: T. W. Knacke, Parachute Recovery Systems Design Manual, NWC TP 6575, 1991, chapter 5, \
-         for canopies of solid cloth.",
+        "Parachute. Its drag acts along the velocity relative to the air and adds to the drag of the vehicle and of \
+         other parachutes.\n\nDuring inflation, the drag area grows as `drag_area` (t/`inflation_time`)²: T. W. \
+         Knacke, Parachute Recovery Systems Design Manual, NWC TP 6575, 1991, chapter 5, for solid-cloth canopies.",
     );
     let name = object
         .field("name", "Name")
-        .doc("By which `release` calls it; no two parachutes have the same, since each is deployed once.")
+        .doc("Name by which `release` refers to the parachute. It must be unique: each parachute is deployed once.")
         .text();
     let drag_area = object
         .field("drag_area", "Drag area")
-        .doc("The drag coefficient times the area of the full canopy, m².")
+        .doc("Drag coefficient times area of the full canopy, m².")
         .unit("m²")
         .number(Bound::DRAG_AREA);
     let inflation_time = object
         .field("inflation_time", "Inflation time")
-        .doc("How long it fills, s; 0: it opens at once.")
+        .doc("Duration of the inflation, s; 0 opens the parachute at once.")
         .unit("s")
         .number(Bound::TIME);
     let delay = object
         .field("delay", "Delay")
-        .doc("From the event until it begins to fill, s.")
+        .doc("Time from the event to the start of the inflation, s.")
         .unit("s")
         .default(0.0)
         .number(Bound::TIME);
@@ -390,8 +421,8 @@ impl Event {
 
     /// Inertial directions on a planet whose angle nobody knows: an epoch says nothing about it, and the state does not give it.
     pub(super) fn frame_faults(events: &[Self], is_angle_known: bool) -> Vec<Fault> {
-        let detail = "is required by the inertial direction of an event: an epoch says nothing about the angle of a custom planet; give \
-                      sidereal_time or sidereal_angle";
+        let detail = "is required for the inertial direction of an event: an epoch does not define the angle of a \
+                      custom planet; give sidereal_time or sidereal_angle";
         let unknown = !is_angle_known && events.iter().any(Self::is_inertial);
         unknown.then(|| Fault::new("/initial_state/sidereal_time", detail)).into_iter().collect()
     }
@@ -405,10 +436,7 @@ impl Event {
             match deployed.entry(name) {
                 Entry::Vacant(entry) => _ = entry.insert(index),
                 Entry::Occupied(first) => {
-                    let detail = format!(
-                        "must be a name of its own: a parachute is deployed once, this one by event {}",
-                        first.get()
-                    );
+                    let detail = format!("must be unique: event {} deploys a parachute of this name", first.get());
                     faults.push(Fault::new(format!("/events/{index}/then/deploy/name"), detail));
                 }
             }
@@ -441,10 +469,11 @@ impl Event {
         let fault = |(index, event): (usize, &Self)| {
             let detail = match event.then.core.reference_area {
                 None if by_area(event) => {
-                    "is required: the ballistic vehicle has no area to which these coefficients could refer"
+                    "is required: the vehicle is ballistic and has no reference area for these coefficients"
                 }
                 Some(_) if !ever => {
-                    "must be left out: the vehicle is ballistic, and no event gives it coefficients of an area"
+                    "must be omitted: the vehicle is ballistic, and no event gives it coefficients that refer to an \
+                     area"
                 }
                 _ => return None,
             };
@@ -473,7 +502,10 @@ impl Condition {
         let detail = match named {
             0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
             1 => return None,
-            _ => format!("must be the name of one event, got {}, the name of {named}", shown(&json!(name))),
+            _ => format!(
+                "must be the name of exactly one event, got {}, the name of {named} events",
+                shown(&json!(name))
+            ),
         };
         Some(Fault::new(format!("{place}/event"), detail))
     }

@@ -26,8 +26,8 @@ impl Heating {
 /// Correlations of the convective flux in air, each with the mark that it is in air.
 const CONVECTIVE: Words<(Convective, bool)> = Words {
     name: "Convective",
-    doc: "Correlations of the convective flux in air, W/m², with the density ρ, kg/m³, the speed V relative to the air, m/s, and the nose radius r, \
-          m.",
+    doc: "Correlation of the convective heat flux in air, W/m², with the density ρ in kg/m³, the air speed V in m/s \
+          and the nose radius r in m.",
     words: &[
         word("sutton_graves", (Convective::SUTTON_GRAVES, true), "Sutton and Graves")
             .doc("1.7415e-4 √(ρ/r) V³; NASA TR R-376, for 2.1 to 15.2 km/s."),
@@ -41,40 +41,47 @@ const CONVECTIVE: Words<(Convective, bool)> = Words {
 /// Correlations of the radiative flux.
 const RADIATIVE: Words<Radiative> = Words {
     name: "Radiative",
-    doc: "Correlations of the radiative flux.",
+    doc: "Correlation of the radiative heat flux, W/m², with the nose radius r in m, the density ρ in kg/m³ and the \
+          air speed V in m/s.",
     words: &[
-        word("none", Radiative::None, "None").doc("No radiation."),
-        word("tauber_sutton", Radiative::TauberSutton, "Tauber and Sutton")
-            .doc("4.736e8 r^a ρ^1.22 f(V), with f tabulated from 9 to 16 km/s and none below; J. Spacecraft 28 (1991), for 10 to 16 km/s, 0.3 to 3 m \
-                  of nose radius and 6.66e-5 to 6.31e-4 kg/m³."),
+        word("none", Radiative::None, "None").doc("No radiative heat flux."),
+        word("tauber_sutton", Radiative::TauberSutton, "Tauber and Sutton").doc(
+            "4.736e8 r^a ρ^1.22 f(V), with f tabulated from 9 to 16 km/s and zero below; J. Spacecraft 28 (1991), for \
+             10 to 16 km/s, nose radii of 0.3 to 3 m and densities of 6.66e-5 to 6.31e-4 kg/m³.",
+        ),
     ],
 };
 
 /// A correlation in air by its name, or that of Sutton and Graves in another gas.
-const CONVECTIVE_FLUX: WordOrObject =
-    WordOrObject { name: "ConvectiveFlux", doc: "The convective flux: by a correlation for air, or in another gas." };
+const CONVECTIVE_FLUX: WordOrObject = WordOrObject {
+    name: "ConvectiveFlux",
+    doc: "Convective heat flux: a correlation for air, or that of Sutton and Graves for another gas.",
+};
 
 /// The heating.
 pub(super) fn heating(object: &mut Object) -> Option<Heating> {
     object.named(
         "Heating",
-        "The heating of the stagnation point, whose `nose_radius` the vehicle then must have: fluxes into a cold wall, their integral, and the \
-         temperature of a wall that radiates as much as it gets.",
+        "Heating of the stagnation point: heat fluxes into a cold wall, their integral, and the radiative equilibrium \
+         temperature of the wall. The vehicle must have a `nose_radius`.",
     );
     let default = CoreHeating::default();
     let convective = object
         .field("convective", "Convective")
-        .doc("The flux by convection: a correlation for air by its name, or that of Sutton and Graves with the constant of another gas.")
+        .doc(
+            "Convective heat flux: the name of a correlation for air, or that of Sutton and Graves with the constant \
+             of another gas.",
+        )
         .default(CONVECTIVE.of((default.convective, true)))
         .word_or(&CONVECTIVE_FLUX, &CONVECTIVE, sutton_graves);
     let radiative = object
         .field("radiative", "Radiative")
-        .doc("The flux by radiation of the shocked air.")
+        .doc("Radiative heat flux from the shocked air.")
         .default(RADIATIVE.of(default.radiative))
         .word(&RADIATIVE);
     let emissivity = object
         .field("emissivity", "Emissivity of the wall")
-        .doc("Of the wall, from 0 to 1.")
+        .doc("Emissivity of the wall, greater than 0 and at most 1.")
         .default(default.emissivity)
         .number(Bound::EMISSIVITY);
     let (convective, convective_in_air) = convective?;
@@ -83,11 +90,11 @@ pub(super) fn heating(object: &mut Object) -> Option<Heating> {
 }
 
 fn sutton_graves(object: &mut Object) -> Option<(Convective, bool)> {
-    object.named("SuttonGraves", "Sutton and Graves's correlation in a gas: k √(ρ/r) V³.");
-    object.field("type", "Type").doc("The kind of correlation.").constant("sutton_graves");
+    object.named("SuttonGraves", "Correlation of Sutton and Graves for a given gas: k √(ρ/r) V³.");
+    object.field("type", "Type").doc("Always `sutton_graves`.").constant("sutton_graves");
     let constant = object
         .field("constant", "Constant")
-        .doc("k, kg^0.5/m; 1.7415e-4 for air. NASA TR R-376 has it for other gases.")
+        .doc("Constant k, kg^0.5/m; 1.7415e-4 for air. NASA TR R-376 lists other gases.")
         .unit("√kg/m")
         .number(Bound::POSITIVE);
     Some((Convective::SuttonGraves { constant: constant? }, false))

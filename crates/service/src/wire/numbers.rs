@@ -82,7 +82,7 @@ impl Numbers {
         let is_below =
             |part: &&&str| pointer.strip_prefix(**part).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
         if let Some(part) = OUTSIDE_THE_CASE.iter().find(is_below) {
-            return Err(format!("must not point into {part}, which is no part of what flies"));
+            return Err(format!("must not point into {part}, which is not part of the simulated case"));
         }
         let found: Vec<_> = self.fields.iter().filter(|field| leads_to(pointer, field)).collect();
         if !found.is_empty() {
@@ -194,7 +194,7 @@ fn is_of_table(pointer: &str) -> bool {
 
 /// Why a number has no variation.
 pub fn immovable(pointer: &str) -> String {
-    format!("the number at {pointer} cannot be varied: with a little more or less of it the case is not sound")
+    format!("the number at {pointer} cannot be varied: with a slightly different value the case is not valid")
 }
 
 /// A step that is small to a number, in parts of its size: differences of fourth order are then exact to some twelve digits.

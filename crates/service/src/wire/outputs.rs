@@ -82,21 +82,21 @@ pub struct OutputNumber {
 
 const MOMENTS: Words<Moment> = Words {
     name: "Moment",
-    doc: "A moment of the flight.",
+    doc: "Moment of the flight.",
     words: &[
-        word("end", Moment::End, "The end").doc("The end of the flight, after what happens then."),
-        word("start", Moment::Start, "The start").doc("The start, before what happens then."),
+        word("end", Moment::End, "The end").doc("End of the flight, after the events at that instant."),
+        word("start", Moment::Start, "The start").doc("Start of the flight, before the events at that instant."),
         word("peak", Moment::Peak, "The peak")
-            .doc("Where the quantity is greatest over the flight, located between rows."),
-        word("lowest", Moment::Lowest, "The lowest").doc("Where the quantity is least over the flight."),
+            .doc("Greatest value of the quantity over the flight, located between rows."),
+        word("lowest", Moment::Lowest, "The lowest").doc("Least value of the quantity over the flight."),
     ],
 };
 
-const AT: WordOrObject = WordOrObject { name: "OutputMoment", doc: "When an output is taken from the flight." };
+const AT: WordOrObject = WordOrObject { name: "OutputMoment", doc: "Moment at which the output is evaluated." };
 
 const SIDES: Words<bool> = Words {
     name: "Side",
-    doc: "The side of an event.",
+    doc: "Side of an event.",
     words: &[
         word("before", false, "Before").doc("Before its effect."),
         word("after", true, "After").doc("After its effect."),
@@ -107,8 +107,8 @@ const SIDES: Words<bool> = Words {
 pub(super) fn output(object: &mut Object) -> Option<FlightOutput> {
     object.named(
         "FlightOutput",
-        "What a flight gives: a `quantity` at a moment, or, with `site`, where it ends relative to a site: two numbers, metres east and \
-         north of it.",
+        "Output of a flight: a `quantity` at a moment or, with `site`, the end point relative to a site as two \
+         numbers, metres east and north of it.",
     );
     object.alternatives(&[("quantity", &quantity), ("site", &at_site)])
 }
@@ -116,8 +116,12 @@ pub(super) fn output(object: &mut Object) -> Option<FlightOutput> {
 fn quantity(object: &mut Object) -> Option<FlightOutput> {
     let columns: Vec<_> = COLUMNS.iter().filter(|column| column.is_number()).collect();
     let names: Vec<_> = columns.iter().map(|column| column.name).collect();
-    let column = object.field("quantity", "Quantity").doc("A column of the trajectory.").name(&names);
-    let at = object.field("at", "At").doc("When.").default("end").word_or(&AT, &MOMENTS, moment);
+    let column = object.field("quantity", "Quantity").doc("Column of the trajectory.").name(&names);
+    let at = object
+        .field("at", "At")
+        .doc("Moment at which the quantity is evaluated.")
+        .default("end")
+        .word_or(&AT, &MOMENTS, moment);
     Some(FlightOutput::Quantity { column: columns[column?], at: at? })
 }
 
@@ -128,31 +132,35 @@ impl From<Moment> for At {
 }
 
 fn moment(object: &mut Object) -> Option<At> {
-    object.named("EventOrTime", "At an event, or at a time.");
+    object.named("EventOrTime", "Event or time.");
     object.alternatives(&[("event", &at_event), ("time", &at_time)])
 }
 
 fn at_event(object: &mut Object) -> Option<At> {
-    let event = object.field("event", "Event").doc("The name of an event.").text();
-    let after = object.field("side", "Side").doc("The side of the event.").default("before").word(&SIDES);
+    let event = object.field("event", "Event").doc("Name of an event.").text();
+    let after = object
+        .field("side", "Side")
+        .doc("Side of the event: before or after its effect.")
+        .default("before")
+        .word(&SIDES);
     Some(At::Event { event: event?, after: after? })
 }
 
 fn at_time(object: &mut Object) -> Option<At> {
-    let time = object.field("time", "Time").doc("Since the start, s.").unit("s").number(Bound::TIME);
+    let time = object.field("time", "Time").doc("Time since the start, s.").unit("s").number(Bound::TIME);
     Some(At::Moment(Moment::Time(time?)))
 }
 
 fn at_site(object: &mut Object) -> Option<FlightOutput> {
-    object.field("site", "Site").doc("A place on the surface.").object(site).map(FlightOutput::Site)
+    object.field("site", "Site").doc("Site on the planet's surface.").object(site).map(FlightOutput::Site)
 }
 
 fn site(object: &mut Object) -> Option<Site> {
-    object.named("Site", "A place on the surface.");
-    let longitude = object.field("longitude", "Longitude").doc("East positive.").angle(Bound::TURN);
+    object.named("Site", "Site on the planet's surface.");
+    let longitude = object.field("longitude", "Longitude").doc("Longitude, east positive.").angle(Bound::TURN);
     let geodetic_latitude = object
         .field("geodetic_latitude", "Latitude, geodetic")
-        .doc("Of the normal of the planet's shape above the equator.")
+        .doc("Angle of the surface normal above the equatorial plane, north positive.")
         .angle(Bound::QUARTER_TURN);
     Some(Site { longitude: longitude?, geodetic_latitude: geodetic_latitude? })
 }
@@ -168,7 +176,7 @@ impl FlightOutput {
         let detail = match place_of(event, events) {
             Ok(_) => return None,
             Err(0) => "must be the name of an event of the case",
-            Err(_) => "must be the name of one event of the case, not of several",
+            Err(_) => "must be the name of exactly one event of the case, not of several",
         };
         Some(Fault::new(format!("{pointer}/at/event"), format!("{detail}, got {event:?}")))
     }

@@ -23,14 +23,15 @@ pub enum PlanetModel {
 /// The words for planets.
 pub const MODELS: Words<PlanetModel> = Words {
     name: "PlanetModel",
-    doc: "The planets whose numbers are known.",
+    doc: "Planet model.",
     words: &[
-        word("earth_wgs84", PlanetModel::EarthWgs84, "Earth, WGS 84").doc("WGS 84."),
-        word("earth_jameson_listing", PlanetModel::EarthJamesonListing, "Earth, the thesis’s listing")
-            .doc("The numbers of the thesis's program, which made its results: g₀ = 9.798 m/s²."),
-        word("earth_jameson_text", PlanetModel::EarthJamesonText, "Earth, the thesis’s text")
-            .doc("The numbers of the thesis's text: g₀ = 9.7803253359 m/s²."),
-        word("custom", PlanetModel::Custom, "Custom").doc("The four numbers given beside it."),
+        word("earth_wgs84", PlanetModel::EarthWgs84, "Earth, WGS 84").doc("Earth with the constants of WGS 84."),
+        word("earth_jameson_listing", PlanetModel::EarthJamesonListing, "Earth, thesis listing")
+            .doc("Earth with the constants of the thesis's program, which computed its results: g₀ = 9.798 m/s²."),
+        word("earth_jameson_text", PlanetModel::EarthJamesonText, "Earth, thesis text")
+            .doc("Earth with the constants of the thesis's text: g₀ = 9.7803253359 m/s²."),
+        word("custom", PlanetModel::Custom, "Custom")
+            .doc("Planet given by `gravitational_parameter`, `equatorial_radius`, `polar_radius` and `rotation_rate`."),
     ],
 };
 
@@ -43,10 +44,10 @@ enum Shape {
 
 const SHAPES: Words<Shape> = Words {
     name: "Shape",
-    doc: "The surface from which altitudes are measured.",
+    doc: "Surface from which altitudes are measured.",
     words: &[
-        word("sphere", Shape::Sphere, "Sphere").doc("A sphere of the equatorial radius."),
-        word("ellipsoid", Shape::Ellipsoid, "Ellipsoid").doc("An ellipsoid of revolution."),
+        word("sphere", Shape::Sphere, "Sphere").doc("Sphere with the equatorial radius."),
+        word("ellipsoid", Shape::Ellipsoid, "Ellipsoid").doc("Ellipsoid of revolution."),
     ],
 };
 
@@ -84,12 +85,20 @@ impl Planet {
 
 /// The planet.
 pub(super) fn planet(object: &mut Object) -> Option<Planet> {
-    object.named("Planet", "The planet. The four numbers are given with the model `custom`, and only there.");
-    let model = object.field("model", "Planet").doc("Which planet.").default("earth_wgs84").word(&MODELS);
-    let shape = object.field("shape", "Shape").doc("Its surface.").default("ellipsoid").word(&SHAPES);
+    object.named(
+        "Planet",
+        "Planet: shape, gravity and rotation. The model `custom` requires `gravitational_parameter`, \
+         `equatorial_radius`, `polar_radius` and `rotation_rate`; the other models do not accept them.",
+    );
+    let model = object.field("model", "Planet").doc("Planet model.").default("earth_wgs84").word(&MODELS);
+    let shape = object
+        .field("shape", "Shape")
+        .doc("Surface from which altitudes are measured.")
+        .default("ellipsoid")
+        .word(&SHAPES);
     let gravity = object
         .field("gravity", "Gravity")
-        .doc("How its gravity falls off.")
+        .doc("Gravity model.")
         .default(json!({"type": "inverse_square"}))
         .object(|object| gravity(object, model));
     let custom = object.only_where("model", "custom", custom);
@@ -117,22 +126,25 @@ pub(super) fn planet(object: &mut Object) -> Option<Planet> {
 fn custom(object: &mut Object) -> Option<CorePlanet> {
     let gravitational_parameter = object
         .field("gravitational_parameter", "Gravitational parameter")
-        .doc("Acceleration of gravity times the squared radius, m³/s²; of a custom planet.")
+        .doc("Gravitational parameter GM of a custom planet, m³/s².")
         .unit("m³/s²")
         .number(Bound::GRAVITATIONAL_PARAMETER);
     let equatorial_radius = object
         .field("equatorial_radius", "Equatorial radius")
-        .doc("m; of a custom planet.")
+        .doc("Equatorial radius of a custom planet, m.")
         .unit("m")
         .number(Bound::PLANET_RADIUS);
     let polar_radius = object
         .field("polar_radius", "Polar radius")
-        .doc("Between 0.1 and 10 times the equatorial radius, m; of a custom planet.")
+        .doc("Polar radius of a custom planet, m; from 0.1 to 10 times the equatorial radius.")
         .unit("m")
         .number(Bound::PLANET_RADIUS);
     let rotation_rate = object
         .field("rotation_rate", "Rotation rate")
-        .doc("Relative to inertial space, positive to the east, rad/s whatever the `angle_unit`; of a custom planet; 0 is allowed.")
+        .doc(
+            "Rotation rate of a custom planet relative to inertial space, positive eastward, in rad/s regardless of \
+             `angle_unit`; 0 is allowed.",
+        )
         .unit("rad/s")
         .number(Bound::ROTATION_RATE);
     Some(CorePlanet {
@@ -145,17 +157,20 @@ fn custom(object: &mut Object) -> Option<CorePlanet> {
 }
 
 fn gravity(object: &mut Object, model: Option<PlanetModel>) -> Option<Gravity> {
-    object.named("Gravity", "How gravity falls off.");
+    object.named("Gravity", "Gravity model.");
     object.variants(
-        "The kind of gravity.",
+        "Kind of gravity.",
         &[
-            variant("inverse_square", "Inverse square", "That of a point.", &|object| {
-                object.named("InverseSquareGravity", "Gravity of a point at the planet's centre.");
+            variant("inverse_square", "Inverse square", "Gravity of a point mass.", &|object| {
+                object.named("InverseSquareGravity", "Gravity of a point mass at the planet's centre.");
                 Some(Gravity::InverseSquare)
             }),
-            variant("zonal", "Zonal harmonics", "That of a body which is flattened at its poles.", &|object| {
-                zonal(object, model).map(Gravity::Zonal)
-            }),
+            variant(
+                "zonal",
+                "Zonal harmonics",
+                "Gravity of a flattened body: zonal harmonics up to degree 4.",
+                &|object| zonal(object, model).map(Gravity::Zonal),
+            ),
         ],
     )
 }
@@ -163,10 +178,11 @@ fn gravity(object: &mut Object, model: Option<PlanetModel>) -> Option<Gravity> {
 fn zonal(object: &mut Object, model: Option<PlanetModel>) -> Option<Zonal> {
     object.named(
         "ZonalGravity",
-        "Gravity with zonal harmonics: U = -GM/r (1 - Σ Jₙ (a/r)ⁿ Pₙ(sin φ)), with the equatorial radius a and the geocentric latitude φ. \
-         Coefficients are given up to the degree, and must be for a custom planet; a named one has the Earth's, of WGS 84 and EGM96.",
+        "Gravity with zonal harmonics: U = -GM/r (1 - Σ Jₙ (a/r)ⁿ Pₙ(sin φ)), with the equatorial radius a and the \
+         geocentric latitude φ. A custom planet requires the coefficients up to `degree`; for the other models they \
+         default to those of the Earth, from WGS 84 and EGM96.",
     );
-    let degree = object.field("degree", "Degree").doc("The greatest n of the sum.").default(2).whole_number([2, 4]);
+    let degree = object.field("degree", "Degree").doc("Highest degree n of the sum.").default(2).whole_number([2, 4]);
     let mut coefficient = |order, name, title, doc, of_earth: f64| {
         let field = object.field(name, title).doc(doc);
         let field = match (degree, model) {
@@ -179,9 +195,10 @@ fn zonal(object: &mut Object, model: Option<PlanetModel>) -> Option<Zonal> {
         field.number(Bound::ZONAL_COEFFICIENT)
     };
     let [j2, j3, j4] = Zonal::EARTH.coefficients;
-    let j2 = coefficient(2, "j2", "J₂", "J₂; the Earth's is 0.0010826298213.", j2);
-    let j3 = coefficient(3, "j3", "J₃", "J₃, from degree 3 on; the Earth's is -2.5326564853e-6.", j3);
-    let j4 = coefficient(4, "j4", "J₄", "J₄, with degree 4; the Earth's is -1.6196215914e-6.", j4);
+    let j2 = coefficient(2, "j2", "J₂", "Coefficient J₂; the Earth's is 0.0010826298213.", j2);
+    let j3 =
+        coefficient(3, "j3", "J₃", "Coefficient J₃, for degree 3 and higher; the Earth's is -2.5326564853e-6.", j3);
+    let j4 = coefficient(4, "j4", "J₄", "Coefficient J₄, for degree 4; the Earth's is -1.6196215914e-6.", j4);
     for (degree, name) in [(3, "j3"), (4, "j4")] {
         // Without a degree it is 2, and the condition holds.
         object.condition(|| {

@@ -497,7 +497,7 @@ impl ObjectReader<'_> {
         for (index, pair) in numbers.windows(2).enumerate() {
             if pair[1] <= pair[0] {
                 let [before, got] = apart([pair[0], pair[1]]);
-                let detail = format!("must be greater than the {before} before it, got {got}");
+                let detail = format!("must be greater than the previous entry, {before}, got {got}");
                 self.fault_of(&format!("{name}/{}{field}", index + 1), detail);
                 sound = false;
             }

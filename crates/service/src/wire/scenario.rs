@@ -75,12 +75,13 @@ pub struct Output {
 /// The words for the equations to integrate.
 pub const FORMULATIONS: Words<Equations> = Words {
     name: "Formulation",
-    doc: "The equations to integrate: the same physics twice.",
+    doc: "Formulation of the equations of motion; both describe the same physics.",
     words: &[
         word("cartesian", Equations::Cartesian, "Cartesian")
-            .doc("Planet-fixed position and velocity: no singularities."),
-        word("spherical", Equations::Spherical, "Spherical (the thesis’s)")
-            .doc("The thesis's: singular at the poles, in vertical flight and at rest."),
+            .doc("Planet-fixed position and velocity; no singularities."),
+        word("spherical", Equations::Spherical, "Spherical (thesis)").doc(
+            "The thesis's equations in spherical coordinates; singular at the poles, in vertical flight and at rest.",
+        ),
     ],
 };
 
@@ -121,7 +122,7 @@ impl FlightRequest {
             misplaced.extend(request.impossible_columns());
         }
         if output != RequestedOutput::Answer && request.output.sampling.is_none() {
-            let detail = "must not be false: CSV and maps consist of the trajectory";
+            let detail = "must not be false: CSV and map formats contain only the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
         let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
@@ -143,7 +144,8 @@ pub fn simulate_request(object: &mut Object) -> Option<SimulateRequest> {
     let request = case(object);
     object.named(
         "SimulateRequest",
-        "A case to simulate. `vehicle` and `initial_state` are required; all else has defaults. SI units; angles in `angle_unit`.",
+        "Case to simulate. `vehicle` and `initial_state` are required; every other field is optional or has a \
+         default. SI units; angles are in `angle_unit`.",
     );
     object.condition(
         || json!({"dependentSchemas": {"heating": {"properties": {"vehicle": {"required": ["nose_radius"]}}}}}),
@@ -161,69 +163,94 @@ fn known_and_case(mut tree: Value) -> Option<(AvailableQuantities, Case)> {
 /// The fields of a case.
 pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let given = ["angle_unit", "atmosphere"].map(|name| object.has(name));
-    let name = object.field("name", "Name").doc("Given back in the answer.").optional().text();
+    let name = object.field("name", "Name").doc("Name of the case; returned in the response.").optional().text();
     let angle_unit = angle_unit(object);
     let echo = object
-        .field("echo", "Repeat the case in the answer")
-        .doc("Whether the answer repeats the request, with every default filled in, as `case`; CSV and maps have no place for it.")
+        .field("echo", "Echo the case")
+        .doc(
+            "Whether the response contains the request with all defaults filled in, as `case`. CSV and map formats \
+             omit it.",
+        )
         .default(false)
         .boolean();
     let sensitivities = asked(object);
     let dispersions = object
         .field("dispersions", "Dispersions")
-        .doc("Numbers of the case that scatter: the answer then has the linear `covariance` of the flight's end. Not with CSV or on a map.")
+        .doc(
+            "Uncertain numbers of the case. The response then contains the linear `covariance` of the end of the \
+             flight. Not supported for CSV and map formats.",
+        )
         .optional()
         .objects([0, MOST_VARIED], dispersion);
     let verify = object
-        .field("verify", "Verify the accuracy")
-        .doc("Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV or on a map.")
+        .field("verify", "Verify accuracy")
+        .doc(
+            "Whether the response reports the numerical accuracy of the flight, as `verification`. It takes the \
+             computing time of about two flights. Not supported for CSV and map formats.",
+        )
         .default(false)
         .boolean();
     let epoch = epoch(
         object,
-        "The instant t = 0: an RFC 3339 time. On the Earth it gives the angle to the inertial frame, where the state gives none; on a \
-         custom planet it dates the flight, and no more.",
+        "Time of t = 0 in RFC 3339 format. On the Earth it defines the angle between the inertial and the \
+         planet-fixed frame, unless the state gives that angle. On a custom planet it only dates the flight.",
     );
-    let planet = object.field("planet", "Planet").doc("Where it flies.").default(json!({})).object(planet);
+    let planet =
+        object.field("planet", "Planet").doc("Planet: shape, gravity and rotation.").default(json!({})).object(planet);
     let atmosphere = object
         .field("atmosphere", "Atmosphere")
-        .doc("The air; without it the exponential atmosphere of the thesis, with the warning `thesis_atmosphere`: new cases of the Earth want \
-              `us76`.")
+        .doc(
+            "Atmosphere model. The default is the exponential atmosphere of the thesis, with the warning \
+             `thesis_atmosphere`; use `us76` for new cases on the Earth.",
+        )
         .default(json!({"type": "exponential"}))
         .object(atmosphere);
     let density_factor = object
         .field("density_factor", "Density factor")
-        .doc("By how much the air is denser than its model.")
+        .doc("Factor on the density of the atmosphere model; 1.2 means 20 % denser air.")
         .default(1.0)
         .number(Bound::NON_NEGATIVE);
     let wind = object
         .field("wind", "Wind")
-        .doc("How the air moves; without it, the air turns with the planet.")
+        .doc("Velocity of the air relative to the rotating planet. Without it, the air rotates with the planet.")
         .optional()
         .object(wind);
-    let vehicle = object.field("vehicle", "Vehicle").doc("What flies.").object(vehicle);
-    let control = object.field("control", "Control").doc("How it is flown.").default(json!({})).object(control);
+    let vehicle = object
+        .field("vehicle", "Vehicle")
+        .doc("Vehicle: mass, reference area, aerodynamics and nose radius.")
+        .object(vehicle);
+    let control = object
+        .field("control", "Control")
+        .doc("Bank angle and angle of attack during the flight.")
+        .default(json!({}))
+        .object(control);
     let heating = object
         .field("heating", "Heating")
-        .doc("How it is heated; without it, no heat flux is computed.")
+        .doc("Heating of the stagnation point. Without it, no heat flux is computed.")
         .optional()
         .object(heating);
-    let events =
-        object.field("events", "Events").doc("What happens on the way.").optional().objects([0, MOST_EVENTS], event);
+    let events = object
+        .field("events", "Events")
+        .doc("Events during the flight, such as parachutes, burns and separations.")
+        .optional()
+        .objects([0, MOST_EVENTS], event);
     let has_epoch = object.has("epoch");
     let initial_state = object
         .field("initial_state", "Initial state")
-        .doc("Where it starts, and how it moves.")
+        .doc("Position and velocity at t = 0, in one of six coordinate systems.")
         .object(|object| state(object, has_epoch));
     inertial_conditions(object, "initial_state");
-    let stop = object.field("stop", "Stop").doc("When the flight ends.").default(json!({})).object(stop);
+    let stop = object.field("stop", "Stop").doc("Conditions that end the flight.").default(json!({})).object(stop);
     let output = object
-        .field("output", "Rows of downloads")
-        .doc("Which rows the trajectory has.")
+        .field("output", "Output rows")
+        .doc("Rows and columns of the trajectory.")
         .default(json!({"samples_per_step": 4}))
         .object(output);
-    let solver =
-        object.field("solver", "Solver").doc("How the equations are integrated.").default(json!({})).object(solver);
+    let solver = object
+        .field("solver", "Solver")
+        .doc("Formulation and tolerance of the numerical integration.")
+        .default(json!({}))
+        .object(solver);
     let assumed = AssumedDefaults { angle_unit: !given[0] && object.turns(), atmosphere: !given[1] };
     let (stop, stop_when) = stop?;
     Some(SimulateRequest {
@@ -254,9 +281,11 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
 /// The unit of the angles that are read after it.
 pub(super) fn angle_unit(object: &mut Object) -> Option<AngleUnit> {
     let unit = object
-        .field("angle_unit", "Angles in the JSON")
-        .doc("The unit of every angle in the request and in the answer. Without it, an angle other than 0 comes with the warning \
-              `angle_unit_assumed`.")
+        .field("angle_unit", "Angle unit in the JSON")
+        .doc(
+            "Unit of every angle in the request and in the response. If it is absent and an angle is not 0, the \
+             response contains the warning `angle_unit_assumed`.",
+        )
         .default("rad")
         .word(&ANGLE_UNITS);
     object.set_angle_unit(unit);
@@ -270,24 +299,35 @@ pub(super) fn epoch(object: &mut Object, doc: &'static str) -> Option<Epoch> {
 
 /// The end of the flight, and its further conditions.
 fn stop(object: &mut Object) -> Option<(Stop, Vec<Condition>)> {
-    object.named("Stop", "When the flight ends, whichever comes first.");
+    object.named("Stop", "Conditions that end the flight; the first one met ends it.");
     let default = Stop::default();
     let altitude = object
         .field("altitude", "Altitude")
-        .doc("The altitude along the radius vector whose downward crossing ends the flight, m; above the planet's centre.")
+        .doc(
+            "Altitude along the radius vector whose downward crossing ends the flight, m. It must be above the \
+             planet's centre.",
+        )
         .unit("m")
         .default(default.altitude)
         .number(Bound::DISTANCE);
-    let time = object.field("time", "Time").doc("s.").unit("s").default(default.time).number(Bound::STOP_TIME);
+    let time = object
+        .field("time", "Time limit")
+        .doc("Time since the start at which the flight ends, s.")
+        .unit("s")
+        .default(default.time)
+        .number(Bound::STOP_TIME);
     let ceiling = object
         .field("ceiling", "Ceiling")
-        .doc("The altitude along the radius vector whose upward crossing ends the flight, m; above `altitude`.")
+        .doc("Altitude along the radius vector whose upward crossing ends the flight, m. It must be above `altitude`.")
         .unit("m")
         .optional()
         .number(Bound::DISTANCE);
     let when = object
         .field("when", "Conditions")
-        .doc("Conditions, each of which ends the flight; of those of one instant the first.")
+        .doc(
+            "Further conditions; each of them ends the flight. If several are met at the same instant, the response \
+             names the first in the list.",
+        )
         .optional()
         .objects([0, MOST_EVENTS], condition);
     Some((Stop { altitude: altitude?, time: time?, ceiling, when: Vec::new() }, when.unwrap_or_default()))
@@ -299,48 +339,56 @@ const WAYS: [&str; 5] = ["samples_per_step", "interval", "count", "times", "traj
 fn output(object: &mut Object) -> Option<Output> {
     object.named(
         "Output",
-        "The rows of the trajectory: exactly one of the first five, which with `columns` alone is `\"samples_per_step\": 4`. Rows at the start and \
-         at the end are always there.",
+        "Rows and columns of the trajectory. Exactly one of `samples_per_step`, `interval`, `count`, `times` and \
+         `trajectory` must be given; if only `columns` is given, `samples_per_step` is 4. The rows at the start and \
+         at the end are always included.",
     );
     let has_columns = object.has("columns");
     if has_columns && !WAYS.iter().any(|way| object.has(way)) {
         object.fill("samples_per_step", json!(4));
     }
     let per_step = object
-        .field("samples_per_step", "Rows a step")
-        .doc("Rows a step of the integration, the last at its end: many where the motion is fast.")
+        .field("samples_per_step", "Rows per step")
+        .doc("Rows per integration step, the last at its end. Steps are short where the motion changes fast.")
         .optional()
         .whole_number([1, usize::MAX]);
     let interval = object
-        .field("interval", "Seconds between rows")
-        .doc("Seconds between rows.")
+        .field("interval", "Interval between rows")
+        .doc("Time between rows, s.")
         .unit("s")
         .optional()
         .number(Bound::POSITIVE);
     let count = object
         .field("count", "Number of rows")
-        .doc("Rows evenly in time, both ends included.")
+        .doc("Number of rows, evenly spaced in time, both ends included.")
         .optional()
         .whole_number([2, usize::MAX]);
     let times = object
-        .field("times", "At the instants")
-        .doc("Instants, ascending, s; those after the end are dropped.")
+        .field("times", "At times")
+        .doc("Times of the rows since the start, ascending, s. Times after the end of the flight are dropped.")
         .unit("s")
         .optional()
         .ascending()
         .numbers(Bound::NON_NEGATIVE, [0, usize::MAX]);
-    object.field("trajectory", "None").doc("`false`: no trajectory in the answer.").optional().value(
-        || json!({"type": "boolean", "const": false}),
-        |value| match value {
-            Value::Bool(false) => Ok(()),
-            other => Err(format!("must be false or absent, got {}", shown(other))),
-        },
-    );
+    object
+        .field("trajectory", "No trajectory")
+        .doc("`false` omits the trajectory from the response.")
+        .optional()
+        .value(
+            || json!({"type": "boolean", "const": false}),
+            |value| match value {
+                Value::Bool(false) => Ok(()),
+                other => Err(format!("must be false or absent, got {}", shown(other))),
+            },
+        );
     let names = COLUMNS.each_ref().map(|column| column.name);
     let columns = object
         .field("columns", "Columns")
-        .doc("The columns of the trajectory, in this order; without it, all that the case has but those of the osculating orbit and `thrust`. Not \
-              with `\"trajectory\": false`, and not for `/analytic`, which has columns of its own; maps ignore it.")
+        .doc(
+            "Columns of the trajectory, in this order. Without it, the trajectory has all columns of the case except \
+             those of the osculating orbit and `thrust`. Not supported with `\"trajectory\": false` and for \
+             `/analytic`, whose columns are fixed; map formats ignore it.",
+        )
         .optional()
         .names(&names);
     let no_trajectory = object.has("trajectory");
@@ -365,15 +413,21 @@ fn output(object: &mut Object) -> Option<Output> {
 }
 
 fn solver(object: &mut Object) -> Option<Solver> {
-    object.named("Solver", "How the equations are integrated.");
+    object.named("Solver", "Formulation and tolerance of the numerical integration.");
     let default = Solver::default();
-    let equations =
-        object.field("formulation", "Formulation").doc("Which equations.").default("cartesian").word(&FORMULATIONS);
+    let equations = object
+        .field("formulation", "Formulation")
+        .doc("Formulation of the equations of motion.")
+        .default("cartesian")
+        .word(&FORMULATIONS);
     let relative_tolerance = object
         .field("relative_tolerance", "Relative tolerance")
-        .doc("The error allowed in a step, relative to the planet's radius and circular speed. The default keeps the end of flights of up to two \
-              hours within 1 m. Errors grow with the flight: a decay from orbit is off by 10 m after 3 days, 80 m after 6 and 700 m after 20; with \
-              1e-13 by 0.3 m after 20. Longer flights come with the warning `long_flight`; `verify` gives the error.")
+        .doc(
+            "Permitted error per integration step, relative to the planet's radius and circular speed. The default \
+             keeps the end of flights of up to 2 hours within 1 m. Errors grow with the duration: a decay from orbit \
+             is off by 10 m after 3 days, 80 m after 6 days and 700 m after 20 days; with 1e-13, it is off by 0.3 m \
+             after 20 days. Longer flights get the warning `long_flight`; `verify` reports the error.",
+        )
         .default(default.relative_tolerance)
         .number(Bound::RELATIVE_TOLERANCE);
     Some(Solver { equations: equations?, relative_tolerance: relative_tolerance?, ..default })
@@ -413,7 +467,7 @@ impl SimulateRequest {
             ("/dispersions", !self.dispersions.is_empty(), "given"),
         ];
         let misplaced = asked.into_iter().filter(|(_, asked, _)| *asked && output != RequestedOutput::Answer);
-        let detail = |how| format!("must not be {how}: CSV and maps do not have it");
+        let detail = |how| format!("must not be {how}: CSV and map formats do not support it");
         misplaced.map(|(pointer, _, how)| Fault::new(pointer, detail(how))).collect()
     }
 

@@ -32,8 +32,9 @@ pub enum RequestedSensitivities {
 
 const SENSITIVITIES: BooleanOrObject = BooleanOrObject {
     name: "RequestedSensitivities",
-    doc: "Which derivatives of the flight the answer has.",
-    boolean: "`true`: those of the flight's end by a fixed list of numbers, for the computing of about six flights.",
+    doc: "Derivatives of the flight in the response.",
+    boolean: "`true` gives the derivatives of the end of the flight by a fixed list of numbers. They take the \
+              computing time of about six flights.",
     object: "an object with outputs and numbers",
 };
 
@@ -43,23 +44,27 @@ const MOST_OUTPUTS: usize = 64;
 /// The field `sensitivities` of a request.
 pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
     object
-        .field("sensitivities", "Sensitivities of the end")
+        .field("sensitivities", "Sensitivities")
         .doc(
-            "Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV \
-             or on a map.",
+            "Derivatives of the flight in the response: `true`, or outputs (`of`) by numbers of the case (`to`). Not \
+             supported for CSV and map formats.",
         )
         .default(false)
-        .boolean_or(&SENSITIVITIES, |asked| if asked { RequestedSensitivities::FinalState } else { RequestedSensitivities::Nothing }, matrix)
+        .boolean_or(
+            &SENSITIVITIES,
+            |asked| if asked { RequestedSensitivities::FinalState } else { RequestedSensitivities::Nothing },
+            matrix,
+        )
 }
 
 fn matrix(object: &mut Object) -> Option<RequestedSensitivities> {
-    object.named("SensitivityMatrix", "The derivatives of outputs by numbers of the case.");
-    let of = object.field("of", "Of").doc("The outputs.").objects([1, MOST_OUTPUTS], output);
+    object.named("SensitivityMatrix", "Derivatives of outputs by numbers of the case.");
+    let of = object.field("of", "Of").doc("Outputs to differentiate.").objects([1, MOST_OUTPUTS], output);
     let to = object
         .field("to", "To")
         .doc(
-            "JSON pointers of numbers in this request, as `echo` shows it; of a list of numbers each is meant. Together at most 64 \
-             numbers.",
+            "JSON pointers of numbers in this request, defaults included (see `echo`). A pointer to a list selects \
+             each of its numbers. At most 64 numbers in total.",
         )
         .texts(MOST_VARIED);
     Some(RequestedSensitivities::Matrix { of: of?, to: to? })
@@ -88,7 +93,7 @@ impl RequestedSensitivities {
         let (count, of_pointers) = numbers.faults(places);
         faults.extend(of_pointers);
         if count > MOST_VARIED {
-            let detail = format!("must be pointers of at most {MOST_VARIED} numbers together, got {count}");
+            let detail = format!("must point to at most {MOST_VARIED} numbers in total, got {count}");
             faults.push(Fault::new("/sensitivities/to", detail));
         }
         faults
@@ -135,53 +140,56 @@ pub struct VariedNumber {
     pub varied: Varied,
 }
 
-/// The derivatives for which a request asks.
+/// Derivatives requested by `sensitivities`.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum SensitivitiesAnswer {
-    /// With `"sensitivities": true`.
+    /// Response to `"sensitivities": true`.
     FinalState(Box<Sensitivities>),
-    /// With `of` and `to`.
+    /// Response to `of` and `to`.
     Matrix(Matrix),
 }
 
-/// The derivatives of outputs by numbers of the case, each by itself, in the units of the request; the steps of the integration are kept, and
-/// what happens on the way moves along.
+/// Derivatives of outputs by numbers of the case, in the units of the request. Each number varies alone. The steps of
+/// the integration are kept; the times of events and of the end vary with the number.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct Matrix {
-    /// The outputs: one for each row. A site has two, `east` and `north` of it, m.
+    /// Outputs, one per row. A site has two rows, `east` and `north` of it, m.
     pub of: Vec<MatrixRow>,
-    /// The numbers: one for each column.
+    /// Numbers, one per column.
     pub to: Vec<MatrixColumn>,
-    /// The derivatives, row by row; null where there is none.
+    /// Derivatives, row by row; null where undefined.
     pub matrix: Vec<Vec<Option<f64>>>,
 }
 
-/// An output.
+/// Output of the flight.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct MatrixRow {
-    /// The quantity; of a site `east` or `north`.
+    /// Column of the trajectory, or `east` or `north` for a site.
     pub quantity: &'static str,
-    /// When it is taken, s; null where the flight has no such moment: an event that does not happen, or a time after the end.
+    /// Time at which the output is evaluated, s; null if the flight has no such moment (an event that does not happen,
+    /// or a time after the end).
     #[schema(required = true)]
     pub time: Option<f64>,
-    /// Its value; null where there is none.
+    /// Value of the output; null where undefined.
     #[schema(required = true)]
     pub value: Option<f64>,
 }
 
-/// A number of the case.
+/// Number of the case.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct MatrixColumn {
-    /// Its pointer.
+    /// JSON pointer of the number.
     pub pointer: String,
-    /// Its value.
+    /// Value of the number.
     pub value: f64,
-    /// How its column was made.
+    /// Method of differentiation.
     pub method: Method,
 }
 
-/// How derivatives were made.
+/// Method of differentiation. `exact`: the number is carried through the flight with its derivatives, accurate to about
+/// 10 digits. `differences`: the number is part of a model whose forces are differenced at every state along the same
+/// steps, to fourth order, accurate to about 8 digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -210,64 +218,65 @@ impl Matrix {
     }
 }
 
-/// How the end of the flight changes with the numbers of the case, each by itself, in the units of the request.
-/// The steps of the integration are kept, and the impact moves along: these are the exact derivatives of what was computed.
+/// Derivatives of the end of the flight by numbers of the case, in the units of the request. Each number varies alone.
+/// The steps of the integration are kept and the time of impact varies with the number, so these are the exact
+/// derivatives of the computed flight.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Sensitivities {
-    /// Of the final time; 0 where the flight ends at `stop.time`.
+    /// Derivatives of the final time; 0 where the flight ends at `stop.time`.
     pub time: Gradient,
-    /// Of the final longitude.
+    /// Derivatives of the final longitude.
     pub longitude: Gradient,
-    /// Of the final geocentric latitude.
+    /// Derivatives of the final geocentric latitude.
     pub geocentric_latitude: Gradient,
-    /// Of the final speed.
+    /// Derivatives of the final speed.
     pub speed: Gradient,
-    /// Of the final flight-path angle.
+    /// Derivatives of the final flight-path angle.
     pub flight_path_angle: Gradient,
 }
 
-/// The derivatives of one quantity; null where there is none: by a number that the case does not have; at a grazing impact and, of
-/// what is undefined there, at the end of a flight at rest, in vertical flight, or at a pole.
-/// The last six are by the initial state in its `planet_relative` form, with its `radius`.
+/// Derivatives of one quantity. A derivative is null if the case does not have the number, at a grazing impact and, for
+/// quantities that are undefined there, at rest, in vertical flight or at a pole. The last six are by the initial state
+/// in its `planet_relative` form with `radius`.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Gradient {
-    /// Per kg.
+    /// By mass, per kg.
     #[schema(required = true)]
     pub mass: Option<f64>,
-    /// Per m².
+    /// By reference area, per m².
     #[schema(required = true)]
     pub reference_area: Option<f64>,
-    /// Per unit of the coefficient.
+    /// By lift coefficient, per unit of the coefficient.
     #[schema(required = true)]
     pub lift_coefficient: Option<f64>,
-    /// Per unit of the coefficient.
+    /// By drag coefficient, per unit of the coefficient.
     #[schema(required = true)]
     pub drag_coefficient: Option<f64>,
-    /// Per radian or degree.
+    /// By bank angle, per radian or degree.
     #[schema(required = true)]
     pub bank_angle: Option<f64>,
-    /// Per kg/m³ at altitude 0; null but with an exponential atmosphere.
+    /// By density at altitude 0, per kg/m³; null unless the atmosphere is exponential.
     #[schema(required = true)]
     pub surface_density: Option<f64>,
-    /// Per unit of the factor.
+    /// By density factor, per unit of the factor.
     #[schema(required = true)]
     pub density_factor: Option<f64>,
-    /// Per m.
+    /// By initial radius, per m.
     #[schema(required = true)]
     pub radius: Option<f64>,
-    /// Per radian or degree.
+    /// By initial longitude, per radian or degree.
     #[schema(required = true)]
     pub longitude: Option<f64>,
-    /// Per radian or degree, at the same radius.
+    /// By initial geocentric latitude at the same radius, per radian or degree.
     #[schema(required = true)]
     pub geocentric_latitude: Option<f64>,
-    /// Per m/s.
+    /// By initial speed, per m/s.
     #[schema(required = true)]
     pub speed: Option<f64>,
-    /// Per radian or degree.
+    /// By initial flight-path angle, per radian or degree.
     #[schema(required = true)]
     pub flight_path_angle: Option<f64>,
-    /// Per radian or degree.
+    /// By initial heading, per radian or degree.
     #[schema(required = true)]
     pub heading: Option<f64>,
 }

@@ -101,7 +101,7 @@ impl Height {
     fn faults(self, pointer: &str, geocentric_latitude: f64, planet: &CorePlanet) -> Vec<Fault> {
         let radius = self.radius(geocentric_latitude, planet);
         let surface = Self::Altitude(0.0).radius(geocentric_latitude, planet);
-        let detail = || format!("must lie above the planet's centre, {surface:.0} m below the surface here");
+        let detail = || format!("must be above the planet's centre, which is {surface:.0} m below the surface here");
         let fault = (radius <= 0.0).then(|| Fault::new(format!("{pointer}/altitude"), detail()));
         fault.into_iter().collect()
     }
@@ -120,7 +120,8 @@ impl Coordinates {
                 let foot = Geodetic { geodetic_altitude: 0.0, ..*state };
                 let [here, foot] = [*state, foot].map(|state| state.to_planet_fixed(&planet.shape).position);
                 let beyond = here.dot(&foot) < 0.0;
-                let detail = format!("must lie above the planet's centre, {:.0} m below the surface here", foot.norm());
+                let detail =
+                    format!("must be above the planet's centre, which is {:.0} m below the surface here", foot.norm());
                 beyond.then(|| Fault::new(format!("{pointer}/geodetic_altitude"), detail)).into_iter().collect()
             }
             Self::OrbitalElements { shape, eccentricity, anomaly, .. } => {
@@ -176,12 +177,13 @@ fn orbit_faults(pointer: &str, shape: OrbitShape, e: f64, anomaly: Anomaly) -> V
     let mut faults = Vec::new();
     match shape {
         OrbitShape::SemiMajorAxis(_) if e.total_cmp(&1.0).is_eq() => {
-            let detail = "a parabola (eccentricity 1) has no semi-major axis; give semi_latus_rectum in its place";
+            let detail = "must be omitted: a parabola (eccentricity 1) has no semi-major axis; give semi_latus_rectum \
+                          instead";
             faults.push(Fault::new(format!("{pointer}/semi_major_axis"), detail));
         }
         OrbitShape::SemiMajorAxis(a) if a * (1.0 - e) <= 0.0 => {
             let sign = if e < 1.0 { "positive" } else { "negative" };
-            let detail = format!("must be {sign} where the eccentricity is {e}, got {a}");
+            let detail = format!("must be {sign} for an eccentricity of {e}, got {a}");
             faults.push(Fault::new(format!("{pointer}/semi_major_axis"), detail));
         }
         _ => {}
@@ -191,13 +193,12 @@ fn orbit_faults(pointer: &str, shape: OrbitShape, e: f64, anomaly: Anomaly) -> V
             let reach = 1.0 + e * anomaly.cos();
             if reach <= 0.0 {
                 let detail =
-                    format!("lies beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach}");
+                    format!("is beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach}");
                 faults.push(Fault::new(format!("{pointer}/true_anomaly"), detail));
             }
         }
         Anomaly::Mean(_) if e >= 1.0 => {
-            let detail =
-                format!("needs a bound orbit, of an eccentricity below 1, got {e}; give true_anomaly in its place");
+            let detail = format!("requires an eccentricity below 1, got {e}; give true_anomaly instead");
             faults.push(Fault::new(format!("{pointer}/mean_anomaly"), detail));
         }
         Anomaly::Mean(_) => {}
@@ -254,13 +255,13 @@ impl State {
         if frame != Frame::Date {
             let fault =
                 |detail: &str| Fault::new(format!("{pointer}/frame"), format!("{:?} {detail}", FRAMES.of(frame)));
-            let epoch = epoch.ok_or_else(|| fault("needs an epoch"))?;
+            let epoch = epoch.ok_or_else(|| fault("requires an epoch"))?;
             if !planet.is_earth() {
-                return Err(fault("is a frame of the Earth, and not of a custom planet"));
+                return Err(fault("is a frame of the Earth and is not available for a custom planet"));
             }
             if !TESTED_YEARS.contains(&epoch.year()) {
                 let [first, last] = [TESTED_YEARS.start(), TESTED_YEARS.end()];
-                return Err(fault(&format!("needs an epoch from {first} to {last}, got one of {}", epoch.year())));
+                return Err(fault(&format!("requires an epoch from {first} to {last}, got the year {}", epoch.year())));
             }
             let to_planet = match frame {
                 Frame::Gcrf => gcrf_to_planet_fixed(epoch.days()),
@@ -272,8 +273,8 @@ impl State {
             _ if self.gives_sidereal() => given,
             Some(epoch) if planet.is_earth() => Sidereal::of_earth(epoch, planet),
             Some(_) if self.frame.is_some() => {
-                let detail = "is required: an epoch says nothing about the angle of a custom planet; give sidereal_time or \
-                              sidereal_angle";
+                let detail = "is required: an epoch does not define the angle of a custom planet; give sidereal_time \
+                              or sidereal_angle";
                 return Err(Fault::new(format!("{pointer}/sidereal_time"), detail));
             }
             _ => Sidereal { time: Some(SiderealTime(0.0)), angle: None },

@@ -65,10 +65,7 @@ impl<'a> Track<'a> {
     pub fn new(answer: &'a SimulateResponse, rows: &Columns, flight: &Trajectory) -> Result<Self, Fault> {
         let epoch = rows.epoch();
         if epoch.is_some_and(|epoch| epoch.utc(flight.end_time()).is_none()) {
-            return Err(Fault::new(
-                "/epoch",
-                "must let the flight end before the year 10000, where a map is asked for",
-            ));
+            return Err(Fault::new("/epoch", "must let the flight end before the year 10000 for map formats"));
         }
         let vertices = rows.points().iter().map(Vertex::of).collect();
         Ok(Self { answer, epoch, vertices, points: marked(answer, flight, epoch) })

@@ -20,7 +20,9 @@ use super::vehicle;
 use super::verification::Verification;
 use super::warning::Warning;
 
-/// How the flight ended.
+/// How the flight ended. `surface_impact`: downward crossing of a `stop.altitude` of 0. `stop_altitude`: downward
+/// crossing of any other `stop.altitude`. `time_limit`: `stop.time` was reached. `condition`: a condition of
+/// `stop.when` was met; `condition` is its index. `atmosphere_exit`: upward crossing of `stop.ceiling`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Termination {
@@ -36,136 +38,137 @@ pub enum Termination {
     AtmosphereExit,
 }
 
-/// The greatest value of a quantity over the flight, or over a phase of it, the earliest where it is reached more than once.
+/// Greatest value of a quantity over the flight or over a phase; the earliest if it is reached more than once.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Peak {
-    /// In the unit of the quantity.
+    /// Greatest value, in the unit of the quantity.
     pub value: f64,
-    /// s.
+    /// Time since the start, s.
     pub time: f64,
-    /// Height above the planet's shape along the radius vector, m.
+    /// Altitude above the planet's surface along the radius vector, m.
     pub altitude: f64,
 }
 
-/// The peaks of the flight, or of a phase of it, both ends included.
+/// Greatest values over the flight or over a phase, both ends included.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Peaks {
-    /// -dV/dt, m/s².
+    /// Deceleration -dV/dt of the speed relative to the rotating planet, m/s².
     pub deceleration: Peak,
-    /// Lift, drag and thrust over mass and 9.80665 m/s².
+    /// Load factor: resultant of lift, drag and thrust over mass and 9.80665 m/s².
     pub load_factor: Peak,
-    /// Pa.
+    /// Dynamic pressure, Pa.
     pub dynamic_pressure: Peak,
-    /// m.
+    /// Altitude above the planet's surface along the radius vector, m.
     pub altitude: Peak,
-    /// Relative to the rotating planet, m/s.
+    /// Speed relative to the rotating planet, m/s.
     pub speed: Peak,
-    /// The speed relative to the air over that of sound; where the atmosphere has a temperature.
+    /// Mach number: air speed over speed of sound; present if the atmosphere has a speed of sound.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub mach: Option<Peak>,
-    /// Into the stagnation point by convection, W/m²; with heating.
+    /// Convective heat flux into the stagnation point, W/m²; present with `heating`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub convective_heat_flux: Option<Peak>,
-    /// Into the stagnation point by radiation, W/m²; with heating.
+    /// Radiative heat flux into the stagnation point, W/m²; present with `heating`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub radiative_heat_flux: Option<Peak>,
-    /// Into the stagnation point, both fluxes together, W/m²; with heating.
+    /// Heat flux into the stagnation point, convective plus radiative, W/m²; present with `heating`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub heat_flux: Option<Peak>,
-    /// Since the start of the flight, J/m²; with heating.
+    /// Heat load of the stagnation point since the start, J/m²; present with `heating`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub heat_load: Option<Peak>,
-    /// At which the wall radiates as much as it gets, K; with heating.
+    /// Radiative equilibrium temperature of the wall, K; present with `heating`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub wall_temperature: Option<Peak>,
 }
 
-/// An event that happened.
+/// Event that happened.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct EventReport {
-    /// Its place in the list of the request.
+    /// Index of the event in the request, from 0.
     pub index: usize,
-    /// As in the request.
+    /// Name of the event in the request.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub name: Option<String>,
-    /// When it happened, s.
+    /// Time of the event since the start, s.
     pub time: f64,
-    /// The state then, before its effect.
+    /// State at that time, before the effect of the event.
     pub state: Row,
-    /// The state then, after its effect.
+    /// State at that time, after the effect of the event.
     pub after: Row,
 }
 
-/// With what a phase begins.
+/// Event that starts a phase.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct PhaseOrigin {
-    /// The place of the event in the list of the request; of several events at one instant, the last that changes the vehicle.
+    /// Index of the event in the request, from 0. If several events change the vehicle at that instant, the last of
+    /// them.
     pub index: usize,
-    /// Of the event, as in the request.
+    /// Name of the event in the request.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub name: Option<String>,
-    /// True where the phase begins when the propellant is spent; the event had switched that thrust on.
+    /// True if the phase starts when the propellant is spent; the event is then the one that switched the thrust on.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     #[schema(required = false)]
     pub burnout: bool,
 }
 
-/// A part of the flight in which the vehicle stays the same. The first has no length where an event changes the vehicle at the start,
-/// the last where one does at the end.
+/// Part of the flight in which the vehicle does not change. The first phase has no duration if an event changes the
+/// vehicle at the start; the last phase has none if an event does so at the end.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct PhaseReport {
-    /// With what it begins; null at the start of the flight.
+    /// Event that starts the phase; null at the start of the flight.
     pub from: Option<PhaseOrigin>,
-    /// When it begins, s.
+    /// Start of the phase, s.
     pub since: f64,
-    /// When it ends, s.
+    /// End of the phase, s.
     pub until: f64,
-    /// The greatest values in it: at its start those after the change, at its end those before the next one.
+    /// Greatest values in the phase, after the change at its start and before the change at its end.
     pub peaks: Peaks,
 }
 
-/// The models that flew.
+/// Models used for the flight.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Models {
-    /// The planet.
+    /// Planet model.
     #[schema(value_type = names::PlanetModel)]
     pub planet: &'static str,
-    /// Its surface.
+    /// Surface from which altitudes are measured.
     #[schema(value_type = names::Shape)]
     pub shape: &'static str,
-    /// The type of the atmosphere.
+    /// Type of the atmosphere.
     pub atmosphere: &'static str,
-    /// The type of the gravity.
+    /// Type of the gravity.
     pub gravity: &'static str,
-    /// The type of the aerodynamics.
+    /// Type of the aerodynamics at the start.
     pub aerodynamics: &'static str,
-    /// The type of the wind; `still` where the air turns with the planet.
+    /// Type of the wind; `still` if the air rotates with the planet.
     pub wind: &'static str,
 }
 
-/// How the equations were integrated.
+/// Settings and statistics of the numerical integration.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct SolverReport {
-    /// Which equations.
+    /// Formulation of the equations of motion.
     #[schema(value_type = names::Formulation)]
     pub formulation: &'static str,
-    /// The error allowed in a step.
+    /// Permitted error per step, relative to the planet's radius and circular speed.
     pub relative_tolerance: f64,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: usize,
-    /// Steps that were tried and missed the tolerance.
+    /// Number of rejected steps, which missed the tolerance.
     pub rejected_steps: usize,
-    /// Evaluations of the right-hand side.
+    /// Number of evaluations of the equations of motion.
     pub evaluations: usize,
-    /// Seconds of computing for integration, events and peaks.
+    /// Computing time of integration, events and peaks, s.
     pub elapsed: f64,
 }
 
@@ -182,62 +185,63 @@ pub struct RequestedAnalyses {
     pub unverified: Option<SimulationError>,
 }
 
-/// A finished flight.
+/// Simulated flight.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct SimulateResponse {
-    /// As in the request.
+    /// Name of the case in the request.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub name: Option<String>,
-    /// The unit of every angle.
+    /// Unit of every angle in the response.
     #[schema(value_type = names::AngleUnit)]
     pub angle_unit: AngleUnit,
-    /// Of the service.
+    /// Version of the service.
     pub version: &'static str,
-    /// The models that flew.
+    /// Models used for the flight.
     pub models: Models,
     /// How the flight ended.
     pub termination: Termination,
-    /// Of `stop.when`, the index of the condition that ended the flight.
+    /// Index in `stop.when` of the condition that ended the flight, from 0; present if a condition ended it.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub condition: Option<usize>,
-    /// At t = 0, as given: before what happens then.
+    /// State at t = 0 as given, before the events at that instant.
     pub initial_state: Row,
-    /// At the end, after what happens then.
+    /// State at the end, after the events at that instant.
     pub final_state: Row,
-    /// The events that happened, in order; where the request has any.
+    /// Events that happened, in order; present if the request has events.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub events: Option<Vec<EventReport>>,
-    /// The greatest values.
+    /// Greatest values over the flight.
     pub peaks: Peaks,
-    /// The parts of the flight between the events that change the vehicle: its mass, area, coefficients or thrust; where there are any.
-    /// The greatest of their peaks are `peaks`.
+    /// Parts of the flight between events that change the vehicle (mass, area, coefficients or thrust); present if
+    /// there is more than one. The greatest of their peaks are `peaks`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub phases: Option<Vec<PhaseReport>>,
-    /// The rows that were asked for; absent with `"output": {"trajectory": false}`.
+    /// Rows of the trajectory; absent with `"output": {"trajectory": false}`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub trajectory: Option<Columns>,
-    /// The derivatives of the flight's end, with `sensitivities`.
+    /// Derivatives of the flight; present with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub sensitivities: Option<SensitivitiesAnswer>,
-    /// How far the flight's end scatters, to first order, with `dispersions`.
+    /// Scatter of the end of the flight, to first order; present with `dispersions`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub covariance: Option<Covariance>,
-    /// How exact the flight is, with `verify`; absent with the warning `not_verified` where the finer flight cannot be finished.
+    /// Numerical accuracy of the flight; present with `verify`. Absent, with the warning `not_verified`, if the finer
+    /// flight fails.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub verification: Option<Verification>,
-    /// How the equations were integrated.
+    /// Settings and statistics of the numerical integration.
     pub solver: SolverReport,
-    /// What the user should know.
+    /// Warnings about the request and the flight.
     pub warnings: Vec<Warning>,
-    /// The request with every default filled in, with `echo`: it can be sent again.
+    /// Request with all defaults filled in, which can be sent again; present with `echo`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = names::SimulateRequest)]
     pub case: Option<Value>,

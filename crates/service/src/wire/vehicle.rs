@@ -10,19 +10,23 @@ use super::reader::{MOST_COLUMNS, MOST_ENTRIES, MOST_ROWS};
 
 /// The vehicle.
 pub(super) fn vehicle(object: &mut Object) -> Option<Vehicle> {
-    object.named("Vehicle", "A point mass with lift and drag.");
-    let mass = object.field("mass", "Mass").doc("kg.").unit("kg").number(Bound::POSITIVE);
+    object.named("Vehicle", "Vehicle: a point mass with lift and drag.");
+    let mass = object.field("mass", "Mass").doc("Mass of the vehicle, kg.").unit("kg").number(Bound::POSITIVE);
     let reference_area = object.only_unless("aerodynamics/type", "ballistic", |object| {
         object
             .field("reference_area", "Reference area")
-            .doc("The area to which the coefficients refer, m²; required, but with `ballistic` aerodynamics, which take none.")
+            .doc(
+                "Reference area of the coefficients, m². Required, except with `ballistic` aerodynamics, which do not \
+                 accept it.",
+            )
             .unit("m²")
             .number(Bound::NON_NEGATIVE)
     });
-    let aerodynamics = object.field("aerodynamics", "Aerodynamics").doc("Lift and drag.").object(aerodynamics);
+    let aerodynamics =
+        object.field("aerodynamics", "Aerodynamics").doc("Lift and drag coefficients.").object(aerodynamics);
     let nose_radius = object
         .field("nose_radius", "Nose radius")
-        .doc("Of the nose at its stagnation point, m; required with `heating`.")
+        .doc("Nose radius at the stagnation point, m. Required with `heating`.")
         .unit("m")
         .optional()
         .number(Bound::POSITIVE);
@@ -36,15 +40,20 @@ pub(super) fn vehicle(object: &mut Object) -> Option<Vehicle> {
 pub(super) fn aerodynamics(object: &mut Object) -> Option<Aerodynamics> {
     object.named("Aerodynamics", "Lift and drag coefficients.");
     object.variants(
-        "The kind of aerodynamics.",
+        "Kind of aerodynamics.",
         &[
-            variant("constant", "Constant coefficients", "The same at every speed.", &constant),
-            variant("ballistic", "Ballistic coefficient", "The same at every speed, by ratios.", &ballistic),
-            variant("mach_table", "By Mach number", "By Mach number.", &mach_table),
+            variant("constant", "Constant coefficients", "Coefficients that do not depend on speed.", &constant),
+            variant(
+                "ballistic",
+                "Ballistic coefficient",
+                "Ballistic coefficient and lift-to-drag ratio that do not depend on speed.",
+                &ballistic,
+            ),
+            variant("mach_table", "By Mach number", "Coefficients by Mach number.", &mach_table),
             variant(
                 "alpha_mach_table",
                 "By angle of attack and Mach number",
-                "By angle of attack and Mach number.",
+                "Coefficients by angle of attack and Mach number.",
                 &alpha_mach_table,
             ),
         ],
@@ -62,32 +71,32 @@ pub(super) fn kind(aerodynamics: &Aerodynamics) -> &'static str {
 }
 
 fn constant(object: &mut Object) -> Option<Aerodynamics> {
-    object.named("ConstantAerodynamics", "Coefficients that are the same at every speed.");
+    object.named("ConstantAerodynamics", "Coefficients that do not depend on speed.");
     let lift_coefficient = object
         .field("lift_coefficient", "Lift coefficient")
-        .doc("Negative lift points down at zero bank. Lift fades out within 0.001 rad of the vertical, where the bank angle is undefined.")
+        .doc(
+            "Lift coefficient; negative lift points down at zero bank angle. Lift fades out within 0.001 rad of the \
+             vertical, where the bank angle is undefined.",
+        )
         .default(0.0)
         .number(Bound::FINITE);
     let drag_coefficient = object
         .field("drag_coefficient", "Drag coefficient")
-        .doc("Drag acts against the velocity relative to the air.")
+        .doc("Drag coefficient. Drag acts against the velocity relative to the air.")
         .number(Bound::NON_NEGATIVE);
     Some(Aerodynamics::Constant { lift_coefficient: lift_coefficient?, drag_coefficient: drag_coefficient? })
 }
 
 fn ballistic(object: &mut Object) -> Option<Aerodynamics> {
-    object.named(
-        "BallisticAerodynamics",
-        "Coefficients that are the same at every speed, by the ratios on which the flight depends.",
-    );
+    object.named("BallisticAerodynamics", "Ballistic coefficient and lift-to-drag ratio that do not depend on speed.");
     let ballistic_coefficient = object
         .field("ballistic_coefficient", "Ballistic coefficient")
-        .doc("Mass over drag coefficient and reference area, kg/m².")
+        .doc("Mass over the product of drag coefficient and reference area, kg/m².")
         .unit("kg/m²")
         .number(Bound::POSITIVE);
     let lift_to_drag = object
-        .field("lift_to_drag", "Lift over drag")
-        .doc("Lift over drag; negative lift points down at zero bank.")
+        .field("lift_to_drag", "Lift-to-drag ratio")
+        .doc("Lift-to-drag ratio; negative lift points down at zero bank angle.")
         .default(0.0)
         .number(Bound::FINITE);
     Some(Aerodynamics::Ballistic { ballistic_coefficient: ballistic_coefficient?, lift_to_drag: lift_to_drag? })
@@ -97,7 +106,7 @@ fn ballistic(object: &mut Object) -> Option<Aerodynamics> {
 fn mach_numbers(object: &mut Object, title: &'static str, most: usize) -> Option<Vec<f64>> {
     object
         .field("mach", title)
-        .doc("The speed relative to the air over that of sound, ascending.")
+        .doc("Mach numbers (air speed over speed of sound), ascending.")
         .ascending()
         .numbers(Bound::NON_NEGATIVE, [1, most])
 }
@@ -105,17 +114,17 @@ fn mach_numbers(object: &mut Object, title: &'static str, most: usize) -> Option
 fn mach_table(object: &mut Object) -> Option<Aerodynamics> {
     object.named(
         "MachTable",
-        "Coefficients by Mach number, smooth between the entries; beyond the first and the last their values hold. All lists have as many. Needs an \
-         atmosphere that has a speed of sound.",
+        "Coefficients by Mach number, interpolated smoothly; outside the table, the values at its ends are used. All \
+         lists must have the same length. The atmosphere must have a speed of sound.",
     );
     let mach = mach_numbers(object, "Mach", MOST_ENTRIES);
     let lift_coefficient = object
         .field("lift_coefficient", "Lift coefficient")
-        .doc("Negative lift points down at zero bank.")
+        .doc("Lift coefficients; negative lift points down at zero bank angle.")
         .numbers(Bound::FINITE, [1, MOST_ENTRIES]);
     let drag_coefficient = object
         .field("drag_coefficient", "Drag coefficient")
-        .doc("At least 0.")
+        .doc("Drag coefficients, at least 0.")
         .numbers(Bound::NON_NEGATIVE, [1, MOST_ENTRIES]);
     let sound = object.equally_long("mach", &["lift_coefficient", "drag_coefficient"]);
     let (mach, lift_coefficient, drag_coefficient) = (mach?, lift_coefficient?, drag_coefficient?);
@@ -126,21 +135,24 @@ fn mach_table(object: &mut Object) -> Option<Aerodynamics> {
 fn alpha_mach_table(object: &mut Object) -> Option<Aerodynamics> {
     object.named(
         "AlphaMachTable",
-        "Coefficients by angle of attack and Mach number, smooth between the entries; beyond the first and the last their values hold. Of each \
-         coefficient a row for every angle of attack, with a number for every Mach number. Needs an atmosphere that has a speed of sound.",
+        "Coefficients by angle of attack and Mach number, interpolated smoothly; outside the table, the values at its \
+         edges are used. Each coefficient has one row per angle of attack, with one number per Mach number. The \
+         atmosphere must have a speed of sound.",
     );
     let angle_of_attack = object
         .field("angle_of_attack", "Angles of attack (rows)")
-        .doc("Ascending, within ±2π (±360°).")
+        .doc("Angles of attack, ascending, within ±2π (±360°).")
         .ascending()
         .angles(Bound::TURN, MOST_ROWS);
     let mach = mach_numbers(object, "Mach numbers (columns)", MOST_COLUMNS);
     let lift_coefficient = object
         .field("lift_coefficient", "Lift coefficients")
-        .doc("Negative lift points down at zero bank.")
+        .doc("Lift coefficients; negative lift points down at zero bank angle.")
         .matrix(Bound::FINITE, "mach");
-    let drag_coefficient =
-        object.field("drag_coefficient", "Drag coefficients").doc("At least 0.").matrix(Bound::NON_NEGATIVE, "mach");
+    let drag_coefficient = object
+        .field("drag_coefficient", "Drag coefficients")
+        .doc("Drag coefficients, at least 0.")
+        .matrix(Bound::NON_NEGATIVE, "mach");
     let sound = object.equally_long("angle_of_attack", &["lift_coefficient", "drag_coefficient"]);
     let (angle_of_attack, mach) = (angle_of_attack?, mach?);
     let (lift_coefficient, drag_coefficient) = (lift_coefficient?, drag_coefficient?);

@@ -4,23 +4,23 @@ use reentry::verification::Verification as CoreVerification;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// How exact the flight is: beside one at a hundredth of its tolerance, and by its balance of energy.
+/// Numerical accuracy of a flight: comparison with a flight at a hundredth of its tolerance, and energy balance.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Verification {
-    /// The tolerance of the finer flight: a hundredth of the flight's, but at least 1e-14. Where it is the flight's own, both are
-    /// the same flight, and the differences of 0 say nothing.
+    /// Tolerance of the finer flight: a hundredth of the flight's tolerance, but at least 1e-14. If it equals the
+    /// flight's tolerance, both flights are the same and the differences of 0 carry no information.
     pub relative_tolerance: f64,
-    /// The final time less that of the finer flight, s.
+    /// Final time minus that of the finer flight, s.
     pub time_difference: f64,
-    /// Between the final positions of both in the planet-fixed frame, m.
+    /// Distance between the final positions of both flights in the planet-fixed frame, m.
     pub distance: f64,
-    /// The greatest amount on the way by which V²/2 - ω²(x² + y²)/2 + U, with the potential U of gravity (-GM/r and its harmonics),
-    /// and the work of drag and thrust did not add up, J/kg.
-    /// The work is summed on the dense output, which is less exact than the steps.
+    /// Largest imbalance during the flight between the specific energy V²/2 - ω²(x² + y²)/2 + U, with the gravitational
+    /// potential U (-GM/r and its harmonics), and the work of drag and thrust, J/kg. The work is integrated along the
+    /// dense output, which is less accurate than the steps.
     pub energy_drift: f64,
-    /// The energy that the drag has taken, and in wind the lift, J/kg, to compare the drift with.
+    /// Energy removed by drag (in wind, by drag and lift), J/kg; the scale for `energy_drift`.
     pub drag_work: f64,
-    /// The energy that thrust has given, J/kg, impulses not included; where an event switches thrust.
+    /// Energy added by thrust, J/kg, without impulses; present if an event switches thrust.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub thrust_work: Option<f64>,

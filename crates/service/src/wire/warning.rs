@@ -17,14 +17,14 @@ use super::scenario::SimulateRequest;
 use super::state::{FRAMES, Frame, State};
 use super::{Angle, AngleUnit};
 
-/// Something that the user should know.
+/// Warning about the request or the flight.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Warning {
-    /// For programs.
+    /// Code of the warning, for programs.
     pub code: &'static str,
-    /// For people.
+    /// Explanation of the warning, for people.
     pub detail: String,
-    /// When in the flight, s, where that has a meaning.
+    /// Time in the flight, s; present where it applies.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     pub time: Option<f64>,

@@ -33,13 +33,16 @@ impl Wind {
 
 /// The wind.
 pub(super) fn wind(object: &mut Object) -> Option<Wind> {
-    object
-        .named("Wind", "The velocity of the air relative to the rotating planet, along east and north of the plane normal to the radius.");
+    object.named(
+        "Wind",
+        "Velocity of the air relative to the rotating planet: east and north components in the plane normal to the \
+         radius.",
+    );
     object.variants(
-        "The kind of wind.",
+        "Kind of wind.",
         &[
-            variant("constant", "The same everywhere", "The same everywhere.", &constant),
-            variant("table", "By altitude", "By altitude.", &table),
+            variant("constant", "Constant", "The same wind everywhere.", &constant),
+            variant("table", "By altitude", "Wind by altitude.", &table),
         ],
     )
 }
@@ -49,42 +52,48 @@ const WAYS: [[&str; 2]; 2] = [["east", "north"], ["speed", "from"]];
 
 fn constant(object: &mut Object) -> Option<Wind> {
     object.named("ConstantWind", "The same wind everywhere.");
-    let [east, north] = object.one_set(
-        WAYS,
-        |object| {
-            let east =
-                object.field("east", "Towards the east").doc("Towards the east, m/s.").unit("m/s").number(Bound::WIND);
-            let north = object
-                .field("north", "Towards the north")
-                .doc("Towards the north, m/s.")
-                .unit("m/s")
-                .number(Bound::WIND);
-            Some([east?, north?])
-        },
-        |object| {
-            let speed = object
-                .field("speed", "Speed")
-                .doc("m/s; with `from` in place of `east` and `north`.")
-                .unit("m/s")
-                .number(Bound::WIND_SPEED);
-            let from = object
+    let [east, north] =
+        object.one_set(
+            WAYS,
+            |object| {
+                let east = object
+                    .field("east", "East component")
+                    .doc("Wind component towards the east, m/s.")
+                    .unit("m/s")
+                    .number(Bound::WIND);
+                let north = object
+                    .field("north", "North component")
+                    .doc("Wind component towards the north, m/s.")
+                    .unit("m/s")
+                    .number(Bound::WIND);
+                Some([east?, north?])
+            },
+            |object| {
+                let speed = object
+                    .field("speed", "Speed")
+                    .doc("Wind speed, m/s. It requires `from`; both replace `east` and `north`.")
+                    .unit("m/s")
+                    .number(Bound::WIND_SPEED);
+                let from = object
                 .field("from", "From, clockwise from north")
-                .doc("The compass direction from which the wind blows, clockwise from north: 0 is a north wind, 270° a west wind.")
+                .doc("Direction from which the wind blows, clockwise from north: 0 is a north wind, 270° a west wind. \
+                      Within ±2π (±360°).")
                 .angle(Bound::TURN);
-            Some(components(speed?, from?))
-        },
-    )?;
+                Some(components(speed?, from?))
+            },
+        )?;
     Some(Wind { core: CoreWind::Constant { east, north }, blows: east != 0.0 || north != 0.0 })
 }
 
 fn table(object: &mut Object) -> Option<Wind> {
     object.named(
         "TableWind",
-        "Wind by altitude, smooth between the entries; beyond the first and the last their wind holds. All lists have as many.",
+        "Wind by altitude, interpolated smoothly; outside the table, the wind at its ends is used. All lists must \
+         have the same length.",
     );
     let altitude = object
         .field("altitude", "Altitude")
-        .doc("Along the radius vector, ascending, m.")
+        .doc("Altitudes along the radius vector, ascending, m.")
         .unit("m")
         .ascending()
         .numbers(Bound::DISTANCE, [1, MOST_ENTRIES]);
@@ -93,12 +102,12 @@ fn table(object: &mut Object) -> Option<Wind> {
         |object| {
             let east = object
                 .field("east", "East")
-                .doc("Towards the east, m/s.")
+                .doc("Wind component towards the east, m/s.")
                 .unit("m/s")
                 .numbers(Bound::WIND, [1, MOST_ENTRIES]);
             let north = object
                 .field("north", "North")
-                .doc("Towards the north, m/s.")
+                .doc("Wind component towards the north, m/s.")
                 .unit("m/s")
                 .numbers(Bound::WIND, [1, MOST_ENTRIES]);
             let sound = object.equally_long("altitude", &["east", "north"]);
@@ -107,12 +116,15 @@ fn table(object: &mut Object) -> Option<Wind> {
         |object| {
             let speed = object
                 .field("speed", "Speed")
-                .doc("m/s; with `from` in place of `east` and `north`, which are what is interpolated.")
+                .doc(
+                    "Wind speeds, m/s. They require `from`; both replace `east` and `north`. The east and north \
+                     components are interpolated.",
+                )
                 .unit("m/s")
                 .numbers(Bound::WIND_SPEED, [1, MOST_ENTRIES]);
             let from = object
                 .field("from", "From")
-                .doc("The compass directions from which the wind blows, clockwise from north, within ±2π (±360°).")
+                .doc("Directions from which the wind blows, clockwise from north, within ±2π (±360°).")
                 .angles(Bound::TURN, MOST_ENTRIES);
             let sound = object.equally_long("altitude", &["speed", "from"]);
             let (speed, from) = (speed?, from?);

@@ -156,8 +156,9 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
             |schema| {
                 let mut number = schema::number(Bound::FINITE);
                 let mut list = schema::list(&number, [0, usize::MAX]);
-                (number["description"], list["description"]) = (json!("For all."), json!("For each."));
-                let doc = "A number for all entries of a table, or one for each.";
+                (number["description"], list["description"]) =
+                    (json!("One value for all entries."), json!("One value per entry."));
+                let doc = "A number for all entries of a table, or a list with one number per entry.";
                 let either = json!({"oneOf": [number, list], "description": doc});
                 // The keywords beside the reference are each of one of the two alone.
                 let mut schema = schema.component("NumberOrList", either);

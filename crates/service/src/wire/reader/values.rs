@@ -58,7 +58,7 @@ pub(super) fn bounded_angle(value: &Value, bound: Bound, unit: Option<AngleUnit>
         None => number(value),
         Some(AngleUnit::Rad) => {
             number(value)?;
-            let hint = "were degrees meant? Then send \"angle_unit\": \"deg\"";
+            let hint = "for degrees, set \"angle_unit\": \"deg\"";
             bounded(value, bound).map_err(|detail| format!("{detail} (radians); {hint}"))
         }
         Some(AngleUnit::Deg) => {

@@ -12,26 +12,38 @@ use crate::wire::epoch::{self, SiderealTime};
 ///
 /// Without an epoch, the time since its frames were aligned is 0 where it does not say otherwise.
 pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
-    object.named("State", "A state, in one of six coordinate systems. Angles are in the request's `angle_unit`.");
+    object.named("State", "State in one of six coordinate systems. Angles are in `angle_unit`.");
     object.variants(
-        "The kind of state.",
+        "Kind of state.",
         &[
             variant(
                 "planet_relative",
-                "Planet-relative (the thesis’s)",
-                "Speed and angles against the geocentric horizontal.",
+                "Planet-relative (thesis)",
+                "Speed, flight-path angle and heading relative to the rotating planet, measured from the geocentric \
+                 horizontal.",
                 &|object| planet_relative(object, has_epoch),
             ),
-            variant("geodetic", "Geodetic", "Speed and angles against the geodetic horizontal.", &|object| {
-                geodetic(object, has_epoch)
+            variant(
+                "geodetic",
+                "Geodetic",
+                "Speed, flight-path angle and azimuth relative to the rotating planet, measured from the geodetic \
+                 horizontal.",
+                &|object| geodetic(object, has_epoch),
+            ),
+            variant("ecef", "Planet-fixed vectors (ECEF)", "Planet-fixed position and velocity vectors.", &|object| {
+                ecef(object, has_epoch)
             }),
-            variant("ecef", "Planet-fixed vectors (ECEF)", "Planet-fixed vectors.", &|object| ecef(object, has_epoch)),
-            variant("eci", "Inertial vectors (ECI)", "Inertial vectors.", &|object| eci(object, has_epoch)),
-            variant("orbital_elements", "Orbital elements", "An orbit.", &|object| orbital_elements(object, has_epoch)),
+            variant("eci", "Inertial vectors (ECI)", "Inertial position and velocity vectors.", &|object| {
+                eci(object, has_epoch)
+            }),
+            variant("orbital_elements", "Orbital elements", "Classical orbital elements.", &|object| {
+                orbital_elements(object, has_epoch)
+            }),
             variant(
                 "inertial_flight_path",
                 "Inertial entry interface",
-                "Speed and angles of the inertial velocity against the geocentric horizontal.",
+                "Speed, flight-path angle and heading of the inertial velocity, measured from the geocentric \
+                 horizontal.",
                 &|object| inertial_flight_path(object, has_epoch),
             ),
         ],
@@ -41,30 +53,42 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
 fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
     object.named(
         "PlanetRelative",
-        "Place and motion relative to the rotating planet, against the geocentric horizontal: the thesis's vehicle-pointing system.",
+        "Position and velocity relative to the rotating planet; angles are measured from the geocentric horizontal. \
+         This is the vehicle-pointing system of the thesis.",
     );
     let height = height(object);
-    let longitude = object.field("longitude", "Longitude").doc("East positive, within ±2π (±360°).").angle(Bound::TURN);
+    let longitude =
+        object.field("longitude", "Longitude").doc("Longitude, east positive, within ±2π (±360°).").angle(Bound::TURN);
     let geocentric_latitude = object
         .field("geocentric_latitude", "Latitude, geocentric")
-        .doc("Within ±π/2 (±90°).")
+        .doc("Latitude, north positive, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
-    let speed =
-        object.field("speed", "Speed").doc("Relative to the rotating planet, m/s.").unit("m/s").number(Bound::SPEED);
+    let speed = object
+        .field("speed", "Speed")
+        .doc("Speed relative to the rotating planet, m/s.")
+        .unit("m/s")
+        .number(Bound::SPEED);
     let flight_path_angle = object
         .field("flight_path_angle", "Flight-path angle")
         .doc(
-            "Of the relative velocity above the local horizontal (the plane normal to the radius), within ±π/2 (±90°).",
+            "Angle of the relative velocity above the local horizontal (the plane normal to the radius), within ±π/2 \
+             (±90°); negative in descent.",
         )
         .angle(Bound::QUARTER_TURN);
     let heading = object
         .field("heading", "Heading, from east to north")
-        .doc("From east (0) towards north (π/2), within ±2π (±360°). Exactly one of `heading` and `azimuth`.")
+        .doc(
+            "Heading of the relative velocity, from east (0) towards north (π/2), within ±2π (±360°). Exactly one of \
+             `heading` and `azimuth` must be given.",
+        )
         .optional()
         .angle(Bound::TURN);
     let azimuth = object
         .field("azimuth", "Azimuth, clockwise from north")
-        .doc("Clockwise from north, within ±2π (±360°). Exactly one of `heading` and `azimuth`.")
+        .doc(
+            "Azimuth of the relative velocity, clockwise from north, within ±2π (±360°). Exactly one of `heading` and \
+             `azimuth` must be given.",
+        )
         .optional()
         .angle(Bound::TURN);
     object.exactly_one(&["heading", "azimuth"]);
@@ -81,24 +105,33 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
 }
 
 fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
-    object.named("Geodetic", "Place and motion relative to the rotating planet, against the geodetic horizontal.");
+    object.named(
+        "Geodetic",
+        "Position and velocity relative to the rotating planet; angles are measured from the geodetic horizontal.",
+    );
     let geodetic_altitude = object
         .field("geodetic_altitude", "Altitude, geodetic")
-        .doc("Height above the planet's shape along its normal, m.")
+        .doc("Altitude above the planet's surface along the surface normal, m.")
         .unit("m")
         .number(Bound::DISTANCE);
-    let longitude = object.field("longitude", "Longitude").doc("East positive, within ±2π (±360°).").angle(Bound::TURN);
-    let geodetic_latitude =
-        object.field("geodetic_latitude", "Latitude, geodetic").doc("Within ±π/2 (±90°).").angle(Bound::QUARTER_TURN);
-    let speed =
-        object.field("speed", "Speed").doc("Relative to the rotating planet, m/s.").unit("m/s").number(Bound::SPEED);
+    let longitude =
+        object.field("longitude", "Longitude").doc("Longitude, east positive, within ±2π (±360°).").angle(Bound::TURN);
+    let geodetic_latitude = object
+        .field("geodetic_latitude", "Latitude, geodetic")
+        .doc("Latitude, north positive, within ±π/2 (±90°).")
+        .angle(Bound::QUARTER_TURN);
+    let speed = object
+        .field("speed", "Speed")
+        .doc("Speed relative to the rotating planet, m/s.")
+        .unit("m/s")
+        .number(Bound::SPEED);
     let flight_path_angle = object
         .field("flight_path_angle", "Flight-path angle")
-        .doc("Of the relative velocity above the geodetic horizontal, within ±π/2 (±90°).")
+        .doc("Angle of the relative velocity above the geodetic horizontal, within ±π/2 (±90°); negative in descent.")
         .angle(Bound::QUARTER_TURN);
     let azimuth = object
         .field("azimuth", "Azimuth, clockwise from north")
-        .doc("Clockwise from north, within ±2π (±360°); answers give [0, 2π).")
+        .doc("Azimuth of the relative velocity, clockwise from north, within ±2π (±360°). Responses give [0, 2π).")
         .angle(Bound::TURN);
     let sidereal = sidereal(object, has_epoch);
     let coordinates = Coordinates::Geodetic(Geodetic {
@@ -113,12 +146,15 @@ fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
 }
 
 fn ecef(object: &mut Object, has_epoch: bool) -> Option<State> {
-    object
-        .named("Ecef", "Planet-fixed vectors, relative to the rotating planet: x through longitude 0 on the equator, z along the pole.");
+    object.named(
+        "Ecef",
+        "Planet-fixed position and velocity, relative to the rotating planet. The x axis points to longitude 0 on the \
+         equator, the z axis to the north pole.",
+    );
     let position = position(object);
     let velocity = object
         .field("velocity", "Velocity")
-        .doc("Velocity [x, y, z] relative to the rotating planet, m/s; its magnitude at most 1e6.")
+        .doc("Velocity [x, y, z] relative to the rotating planet, m/s. Its magnitude must be at most 1e6.")
         .unit("m/s")
         .vector(Bound::VELOCITY);
     let sidereal = sidereal(object, has_epoch);
@@ -127,14 +163,16 @@ fn ecef(object: &mut Object, has_epoch: bool) -> Option<State> {
 }
 
 fn eci(object: &mut Object, has_epoch: bool) -> Option<State> {
-    object
-        .named("Eci", "Inertial vectors, in the `frame`: by default the planet-fixed one at `sidereal_time` 0, with an `epoch` the equator and \
-                       origin of date.");
+    object.named(
+        "Eci",
+        "Inertial position and velocity in the frame `frame`. By default this is the planet-fixed frame at \
+         `sidereal_time` 0 or, with an `epoch`, the equator and origin of date.",
+    );
     let frame = frame(object);
     let position = position(object);
     let velocity = object
         .field("velocity", "Velocity")
-        .doc("Inertial velocity [x, y, z], m/s; relative to the rotating planet at most 1e6.")
+        .doc("Inertial velocity [x, y, z], m/s. The speed relative to the rotating planet must be at most 1e6.")
         .unit("m/s")
         .vector(Bound::FINITE);
     let sidereal = sidereal_of_frame(object, frame, has_epoch);
@@ -147,42 +185,53 @@ fn orbital_elements(object: &mut Object, has_epoch: bool) -> Option<State> {
     let frame = frame(object);
     let semi_major_axis = object
         .field("semi_major_axis", "Semi-major axis")
-        .doc("m; positive below eccentricity 1, negative above. Exactly one of `semi_major_axis` and `semi_latus_rectum`.")
+        .doc(
+            "Semi-major axis, m; positive for eccentricities below 1, negative above. Exactly one of \
+             `semi_major_axis` and `semi_latus_rectum` must be given.",
+        )
         .unit("m")
         .optional()
         .number(Bound::FINITE);
     let semi_latus_rectum = object
         .field("semi_latus_rectum", "Semi-latus rectum")
-        .doc("m; the only size that a parabola has. Exactly one of `semi_major_axis` and `semi_latus_rectum`.")
+        .doc(
+            "Semi-latus rectum, m; required for a parabola. Exactly one of `semi_major_axis` and `semi_latus_rectum` \
+             must be given.",
+        )
         .unit("m")
         .optional()
         .number(Bound::POSITIVE);
     object.exactly_one(&["semi_major_axis", "semi_latus_rectum"]);
     let eccentricity = object
         .field("eccentricity", "Eccentricity")
-        .doc("0 a circle, below 1 an ellipse, 1 a parabola, above a hyperbola.")
+        .doc("Eccentricity: 0 for a circle, below 1 for an ellipse, 1 for a parabola, above 1 for a hyperbola.")
         .number(Bound::NON_NEGATIVE);
     let inclination = object
         .field("inclination", "Inclination")
-        .doc("Of the orbit's angular momentum to the pole, in [0, π] (180°).")
+        .doc("Angle between the orbit's angular momentum and the north pole, in [0, π] (0 to 180°).")
         .angle(Bound::HALF_TURN);
     let raan = object
         .field("raan", "Ascending node (RAAN)")
-        .doc("Right ascension of the ascending node, within ±2π (±360°); answers give [0, 2π).")
+        .doc("Right ascension of the ascending node, within ±2π (±360°). Responses give [0, 2π).")
         .angle(Bound::TURN);
     let argument_of_periapsis = object
         .field("argument_of_periapsis", "Argument of periapsis")
-        .doc("From the ascending node to the periapsis, within ±2π (±360°); answers give [0, 2π).")
+        .doc("Angle from the ascending node to the periapsis, within ±2π (±360°). Responses give [0, 2π).")
         .angle(Bound::TURN);
     let true_anomaly = object
         .field("true_anomaly", "True anomaly")
-        .doc("From the periapsis to the vehicle, within ±2π (±360°); answers give [0, 2π). Exactly one of `true_anomaly` and `mean_anomaly`.")
+        .doc(
+            "Angle from the periapsis to the vehicle, within ±2π (±360°). Responses give [0, 2π). Exactly one of \
+             `true_anomaly` and `mean_anomaly` must be given.",
+        )
         .optional()
         .angle(Bound::TURN);
     let mean_anomaly = object
         .field("mean_anomaly", "Mean anomaly")
-        .doc("The time since the periapsis as a part of that of a revolution, as an angle within ±2π (±360°); of bound orbits (eccentricity below \
-              1). Exactly one of `true_anomaly` and `mean_anomaly`.")
+        .doc(
+            "Time since the periapsis as a fraction of the orbital period, expressed as an angle within ±2π (±360°). \
+             It requires an eccentricity below 1. Exactly one of `true_anomaly` and `mean_anomaly` must be given.",
+        )
         .optional()
         .angle(Bound::TURN);
     object.exactly_one(&["true_anomaly", "mean_anomaly"]);
@@ -206,38 +255,44 @@ fn orbital_elements(object: &mut Object, has_epoch: bool) -> Option<State> {
 fn inertial_flight_path(object: &mut Object, has_epoch: bool) -> Option<State> {
     object.named(
         "InertialFlightPath",
-        "A place on the rotating planet and the inertial velocity there, against the geocentric horizontal: the entry interface as flight reports \
-         quote it.",
+        "Position relative to the rotating planet and inertial velocity; angles are measured from the geocentric \
+         horizontal. Flight reports give the entry interface in this form.",
     );
     let height = height(object);
     let longitude = object
         .field("longitude", "Longitude")
-        .doc("Planet-fixed, east positive, within ±2π (±360°).")
+        .doc("Planet-fixed longitude, east positive, within ±2π (±360°).")
         .angle(Bound::TURN);
     let geocentric_latitude = object
         .field("geocentric_latitude", "Latitude, geocentric")
-        .doc("Within ±π/2 (±90°).")
+        .doc("Latitude, north positive, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let inertial_speed = object
         .field("inertial_speed", "Inertial speed")
-        .doc("Magnitude of the inertial velocity, m/s; relative to the rotating planet at most 1e6.")
+        .doc("Magnitude of the inertial velocity, m/s. The speed relative to the rotating planet must be at most 1e6.")
         .unit("m/s")
         .number(Bound::NON_NEGATIVE);
     let inertial_flight_path_angle = object
         .field("inertial_flight_path_angle", "Inertial flight-path angle")
         .doc(
-            "Of the inertial velocity above the local horizontal (the plane normal to the radius), within ±π/2 (±90°).",
+            "Angle of the inertial velocity above the local horizontal (the plane normal to the radius), within ±π/2 \
+             (±90°); negative in descent.",
         )
         .angle(Bound::QUARTER_TURN);
     let inertial_heading = object
         .field("inertial_heading", "Inertial heading")
-        .doc("Of the inertial velocity, from east (0) towards north (π/2), within ±2π (±360°). Exactly one of `inertial_heading` and \
-              `inertial_azimuth`.")
+        .doc(
+            "Heading of the inertial velocity, from east (0) towards north (π/2), within ±2π (±360°). Exactly one of \
+             `inertial_heading` and `inertial_azimuth` must be given.",
+        )
         .optional()
         .angle(Bound::TURN);
     let inertial_azimuth = object
         .field("inertial_azimuth", "Inertial azimuth")
-        .doc("Of the inertial velocity, clockwise from north, within ±2π (±360°). Exactly one of `inertial_heading` and `inertial_azimuth`.")
+        .doc(
+            "Azimuth of the inertial velocity, clockwise from north, within ±2π (±360°). Exactly one of \
+             `inertial_heading` and `inertial_azimuth` must be given.",
+        )
         .optional()
         .angle(Bound::TURN);
     object.exactly_one(&["inertial_heading", "inertial_azimuth"]);
@@ -262,13 +317,16 @@ fn from_azimuth(azimuth: f64) -> f64 {
 fn height(object: &mut Object) -> Option<Height> {
     let radius = object
         .field("radius", "Radius")
-        .doc("Distance from the planet's centre, m. Exactly one of `radius` and `altitude`.")
+        .doc("Distance from the planet's centre, m. Exactly one of `radius` and `altitude` must be given.")
         .unit("m")
         .optional()
         .number(Bound::RADIUS);
     let altitude = object
         .field("altitude", "Altitude")
-        .doc("Height above the planet's shape along the radius vector, m. Exactly one of `radius` and `altitude`.")
+        .doc(
+            "Altitude above the planet's surface along the radius vector, m. Exactly one of `radius` and `altitude` \
+             must be given.",
+        )
         .unit("m")
         .optional()
         .number(Bound::DISTANCE);
@@ -279,7 +337,7 @@ fn height(object: &mut Object) -> Option<Height> {
 fn position(object: &mut Object) -> Option<[f64; 3]> {
     object
         .field("position", "Position")
-        .doc("Position [x, y, z], m, each within ±1e12.")
+        .doc("Position [x, y, z], m; each component within ±1e12.")
         .unit("m")
         .vector(Bound::DISTANCE)
 }
@@ -287,23 +345,27 @@ fn position(object: &mut Object) -> Option<[f64; 3]> {
 /// The words for inertial frames.
 pub const FRAMES: Words<Frame> = Words {
     name: "Frame",
-    doc: "An inertial frame.",
+    doc: "Inertial frame.",
     words: &[
-        word("date", Frame::Date, "of date")
-            .doc("The planet's equator, from which the planet is turned by the sidereal time; with an epoch on the Earth, the equator and the \
-                  celestial intermediate origin of date."),
+        word("date", Frame::Date, "of date").doc(
+            "The planet's equator, with the planet rotated from it by the sidereal time; with an epoch on the Earth, \
+             the equator and the celestial intermediate origin of date.",
+        ),
         word("teme", Frame::Teme, "TEME (SGP4)")
-            .doc("True equator and mean equinox of date: that of SGP4 and its two-line elements."),
+            .doc("True equator and mean equinox of date, the frame of SGP4 and two-line elements."),
         word("gcrf", Frame::Gcrf, "GCRF (J2000)")
-            .doc("The geocentric celestial reference frame, from which J2000 differs by less than 0.1 arc seconds."),
+            .doc("Geocentric celestial reference frame; J2000 differs from it by less than 0.1 arc seconds."),
     ],
 };
 
 fn frame(object: &mut Object) -> Option<Frame> {
     object
         .field("frame", "Inertial frame")
-        .doc("The inertial frame. `teme` and `gcrf` need an `epoch` from 1900 to 2100 and an Earth, and no sidereal time or angle; they are good to \
-              10 m at the surface, but for polar motion (18 m at most) and UT1-UTC (0.9 s at most, 420 m), which are neglected.")
+        .doc(
+            "Inertial frame. `teme` and `gcrf` require an Earth model and an `epoch` from 1900 to 2100, and do not \
+             accept a sidereal time or angle. They are accurate to 10 m at the surface, apart from polar motion (at \
+             most 18 m) and UT1-UTC (at most 0.9 s, 420 m), which are neglected.",
+        )
         .default("date")
         .word(&FRAMES)
 }
@@ -319,7 +381,7 @@ fn sidereal_of_frame(object: &mut Object, frame: Option<Frame>, has_epoch: bool)
     for name in ["sidereal_time", "sidereal_angle"] {
         if object.has(name) {
             let frame = FRAMES.of(of_epoch);
-            object.fault_of(name, format!("must be left out with the frame {frame:?}, whose angle the epoch gives"));
+            object.fault_of(name, format!("must be omitted with the frame {frame:?}: the epoch defines its angle"));
         }
     }
     Sidereal::default()
@@ -332,14 +394,19 @@ fn sidereal(object: &mut Object, has_epoch: bool) -> Sidereal {
     }
     let time = object
         .field("sidereal_time", "Sidereal time")
-        .doc("When the inertial frame is meant: seconds since it and the planet-fixed frame were aligned, within ±1e9. Default 0, or from the \
-              `epoch`. At most one of `sidereal_time` and `sidereal_angle`.")
+        .doc(
+            "Time since the inertial and the planet-fixed frame were aligned, s, within ±1e9. The default is 0, or \
+             follows from the `epoch`. At most one of `sidereal_time` and `sidereal_angle` may be given.",
+        )
         .unit("s")
         .optional()
         .number_or_text("SiderealTime", Bound::SIDEREAL_TIME, epoch::sidereal_time_schema, SiderealTime::read);
     let angle = object
         .field("sidereal_angle", "Sidereal angle")
-        .doc("The same as an angle: from the inertial frame to the planet-fixed one, eastwards, within ±2π (±360°).")
+        .doc(
+            "Angle from the inertial to the planet-fixed frame, positive eastward, within ±2π (±360°). At most one of \
+             `sidereal_time` and `sidereal_angle` may be given.",
+        )
         .optional()
         .angle_as_given(Bound::TURN);
     object.condition(|| json!({"not": {"required": ["sidereal_time", "sidereal_angle"]}}));
