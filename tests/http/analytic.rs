@@ -229,7 +229,7 @@ async fn a_theory_that_does_not_apply_is_refused_with_every_fault() {
     let (lift, drag) = ("/vehicle/aerodynamics/lift_coefficient", "/vehicle/aerodynamics/drag_coefficient");
     let (angle, area, air) =
         ("/initial_state/flight_path_angle", "/vehicle/reference_area", "/atmosphere/surface_density");
-    let rows = ("/output/trajectory", "the predictions are made at the rows");
+    let rows = ("/output/trajectory", "the theory is evaluated at the rows");
     for solution in SOLUTIONS {
         let good = case(solution);
         let ballistic = solution == "steep_ballistic";
@@ -269,7 +269,7 @@ async fn a_theory_that_does_not_apply_is_refused_with_every_fault() {
     let up = json!({"type": "ecef", "position": [6.5e6, 0, 0], "velocity": [1000, 1000, 0]});
     let climbs = with_all(&case("steep_glide"), [("/initial_state", up), ("/angle_unit", json!("deg"))]);
     steady
-        .refused_at(PATH, &climbs, &[("/initial_state", "must be less than 0: the theory is of a descent, got 4")])
+        .refused_at(PATH, &climbs, &[("/initial_state", "must be less than 0: the theory requires a descent, got 4")])
         .await;
 }
 

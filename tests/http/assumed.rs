@@ -325,7 +325,7 @@ async fn leaving_us76_is_a_warning() {
     assert_eq!(
         detail(&answer, "outside_model"),
         Some(
-            "Atmosphere us76 ends at 1000 km: above it the density falls on with its scale height there (from 0 s, at 1200 km)"
+            "Atmosphere us76 ends at 1000 km: above it the density falls with the scale height at that altitude (from 0 s, at 1200 km)"
         )
     );
 }
@@ -410,7 +410,7 @@ async fn faults_round_their_numbers_unless_that_hides_them() {
         (
             with(&capsule(), "/output", json!({"times": [1, 1.000_000_001, 1.000_000_000_9]})),
             "/output/times/2",
-            "must be greater than the 1.000000001 before it, got 1.0000000009",
+            "must be greater than the previous entry, 1.000000001, got 1.0000000009",
         ),
     ] {
         steady.refused_at("/simulate", &case, &[(pointer, said)]).await;

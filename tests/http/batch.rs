@@ -92,12 +92,12 @@ async fn a_case_that_json_cannot_hold_fails_alone() {
 async fn a_batch_that_is_faulty_as_a_whole_is_refused() {
     let steady = Steady::new().await;
     for (body, detail) in [
-        ("{}", "must be an array of cases, each as /simulate takes it"),
-        ("null", "must be an array of cases, each as /simulate takes it"),
+        ("{}", "must be an array of cases, each a request of /simulate"),
+        ("null", "must be an array of cases, each a request of /simulate"),
         ("[ ]", "must have at least 1 case, got none"),
     ] {
-        let expected = json!({"type": "/problems/invalid-case", "title": "Not a valid case", "status": 422,
-            "detail": "the request has 1 fault", "errors": [{"pointer": "", "detail": detail}]});
+        let expected = json!({"type": "/problems/invalid-case", "title": "Case not valid", "status": 422,
+            "detail": "1 problem in the request", "errors": [{"pointer": "", "detail": detail}]});
         assert_eq!(steady.refused_text(PATH, body).await, expected, "{body}");
     }
     for broken in ["", "[", "[1,]", "[1] 2", "[{\"vehicle\": }]", "[1 2]", "[\"\\ud800\\", "{\"a\"}"] {
@@ -146,9 +146,9 @@ async fn a_batch_may_be_longer_than_a_single_request() {
     let padded = |length: usize| format!("[1{}]", " ".repeat(length - 3));
     assert_eq!(service.post_text(PATH, padded(3000)).await.status, StatusCode::OK);
     let refused = problem(&service.post_text(PATH, padded(3001)).await);
-    assert_eq!(refused["detail"], "the body is longer than the 3000 bytes allowed");
+    assert_eq!(refused["detail"], "the body exceeds the limit of 3000 bytes");
     let refused = problem(&service.post_text("/simulate", padded(1001)).await);
-    assert_eq!(refused["detail"], "the body is longer than the 1000 bytes allowed");
+    assert_eq!(refused["detail"], "the body exceeds the limit of 1000 bytes");
 }
 
 #[tokio::test]
@@ -162,8 +162,8 @@ async fn the_default_limit_admits_a_thousand_ordinary_cases() {
 #[tokio::test]
 async fn a_batch_that_runs_out_of_time_before_its_first_line_is_a_504() {
     let service = Service::with(Config { batch_deadline: Duration::from_millis(1), ..Config::default() });
-    let expected = json!({"type": "/problems/deadline-exceeded", "title": "Out of time", "status": 504,
-        "detail": "the request took longer than the 0.001 s allowed"});
+    let expected = json!({"type": "/problems/deadline-exceeded", "title": "Time limit exceeded", "status": 504,
+        "detail": "the request exceeded the time limit of 0.001 s"});
     assert_eq!(problem(&service.post(PATH, &json!([orbiting(), capsule()])).await), expected);
 }
 
@@ -176,7 +176,7 @@ async fn the_cases_for_which_there_is_no_time_left_have_problems_as_lines() {
     assert_eq!(lines.len(), 50);
     assert_eq!(lines[0]["termination"], "time_limit");
     assert_eq!(lines[49]["status"], 504);
-    assert_eq!(lines[49]["detail"], "the request took longer than the 2 s allowed");
+    assert_eq!(lines[49]["detail"], "the request exceeded the time limit of 2 s");
 }
 
 #[tokio::test]

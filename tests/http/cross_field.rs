@@ -31,14 +31,14 @@ fn orbit(semi_major_axis: f64, eccentricity: f64, true_anomaly: f64) -> Value {
 async fn the_sign_of_the_semi_major_axis_goes_with_the_eccentricity() {
     let steady = Steady::new().await;
     for (a, e, phrase) in [
-        (7e6, 2.0, "must be negative where the eccentricity is 2"),
+        (7e6, 2.0, "must be negative for an eccentricity of 2"),
         (7e6, 1.0_f64.next_up(), "must be negative"),
         (0.0, 2.0, "must be negative"),
-        (-7e6, 0.5, "must be positive where the eccentricity is 0.5"),
+        (-7e6, 0.5, "must be positive for an eccentricity of 0.5"),
         (-7e6, 0.0, "must be positive"),
         (0.0, 0.5, "must be positive"),
-        (7e6, 1.0, "give semi_latus_rectum in its place"),
-        (-7e6, 1.0, "give semi_latus_rectum in its place"),
+        (7e6, 1.0, "give semi_latus_rectum instead"),
+        (-7e6, 1.0, "give semi_latus_rectum instead"),
     ] {
         refuses_state(&steady, &orbit(a, e, 0.0), &[("/semi_major_axis", phrase)]).await;
     }
@@ -194,7 +194,7 @@ async fn an_epoch_says_nothing_about_the_angle_of_a_custom_planet() {
                     good_answer(&steady.service, path, &sound).await;
                 }
                 if kind == "eci" || kind == "orbital_elements" {
-                    let phrase = "is required: an epoch says nothing about the angle of a custom planet";
+                    let phrase = "is required: an epoch does not define the angle of a custom planet";
                     steady.refused_at(path, &neither, &[(&time, phrase)]).await;
                 } else {
                     // A planet-fixed state needs none; the frames are aligned as without an epoch.
@@ -268,7 +268,7 @@ async fn degrees_sent_as_radians_are_asked_about() {
     {
         request["initial_state"][name] = json!(degrees);
     }
-    let question = "were degrees meant? Then send \"angle_unit\": \"deg\"";
+    let question = "for degrees, set \"angle_unit\": \"deg\"";
     let names = ["longitude", "geocentric_latitude", "flight_path_angle", "heading"];
     let pointers = names.map(|name| format!("/initial_state/{name}"));
     let expected: Vec<_> = pointers.iter().map(|pointer| (pointer.as_str(), question)).collect();

@@ -58,7 +58,7 @@ async fn time_never_falls() {
         &capsule(),
         [("/events", json!([then(&json!({})), {"when": falls}])), ("/stop", json!({"when": [falls]}))],
     );
-    let phrase = "is not for time, which never falls: use rises_through";
+    let phrase = "must not be given for time, which never falls; use rises_through";
     let expected = [("/events/1/when/falls_through", phrase), ("/stop/when/0/falls_through", phrase)];
     steady.refused_at("/simulate", &request, &expected).await;
 }
@@ -135,7 +135,17 @@ async fn coefficients_of_an_area_need_one_and_others_take_none() {
             &ballistic_capsule(),
             [("/atmosphere", json!({"type": "us76"})), ("/events", json!([then(&effect)]))],
         );
-        steady.refused_at("/simulate", &request, &[(at, "is required: the ballistic vehicle has no area")]).await;
+        steady
+            .refused_at(
+                "/simulate",
+                &request,
+                &[(
+                    at,
+                    "is required: the vehicle is ballistic and has no reference \
+                                                         area",
+                )],
+            )
+            .await;
     }
     // Which event comes first, nobody knows before the flight: each brings its own area.
     let request = with(
@@ -149,12 +159,16 @@ async fn coefficients_of_an_area_need_one_and_others_take_none() {
             then(&json!({"mass": 5000})),
         ]),
     );
-    let phrase = "is required: the ballistic vehicle has no area to which these coefficients could refer";
+    let phrase = "is required: the vehicle is ballistic and has no reference area for these coefficients";
     steady.refused_at("/simulate", &request, &[(at, phrase), ("/events/2/then/reference_area", phrase)]).await;
     // An area to which no coefficient ever refers would change nothing.
     let grows = then(&json!({"reference_area": 5}));
     let request = with(&ballistic_capsule(), "/events", json!([grows, then(&json!({"aerodynamics": ballistic()}))]));
-    let expected = [(at, "must be left out: the vehicle is ballistic, and no event gives it coefficients of an area")];
+    let expected = [(
+        at,
+        "must be omitted: the vehicle is ballistic, and no event gives it coefficients that refer to \
+                          an area",
+    )];
     steady.refused_at("/simulate", &request, &expected).await;
     let opens = then(&json!({"reference_area": 2, "aerodynamics": constant()}));
     let request = with(&ballistic_capsule(), "/events", json!([opens, grows]));
@@ -174,7 +188,7 @@ async fn thresholds_of_the_flight_path_angle_are_in_the_unit_of_the_request() {
         };
         let pointers = [format!("/events/0/when/{way}"), format!("/stop/when/0/{way}")];
         let expected = |phrase| pointers.each_ref().map(|pointer| (pointer.as_str(), phrase));
-        let phrase = "got -3 (radians); were degrees meant? Then send \"angle_unit\": \"deg\"";
+        let phrase = "got -3 (radians); for degrees, set \"angle_unit\": \"deg\"";
         steady.refused_at("/simulate", &request(&capsule(), -3.0), &expected(phrase)).await;
         let phrase = "must be between -90 and 90, got -91 (degrees)";
         steady.refused_at("/simulate", &request(&in_degrees, -91.0), &expected(phrase)).await;
@@ -235,8 +249,11 @@ async fn faults_of_directions_and_of_propellant_name_their_place() {
         }
     }
     let unburnt = json!({"thrust": {"along": "radial", "value": 10, "propellant": 1}});
-    let expected =
-        [("/events/0/then/thrust/propellant", "must be left out: without specific_impulse the thrust burns none")];
+    let expected = [(
+        "/events/0/then/thrust/propellant",
+        "must be omitted: without specific_impulse the thrust consumes no \
+                                               propellant",
+    )];
     steady.refused_at("/simulate", &eventful(&[then(&unburnt)]), &expected).await;
 }
 
@@ -252,8 +269,8 @@ async fn a_parachute_has_a_name_of_its_own_and_is_released_by_it() {
     ]);
     let unknown = "must be the name of a parachute that an event deploys, got ";
     let expected = [
-        ("/events/2/then/deploy/name", "must be a name of its own: a parachute is deployed once, this one by event 0"),
-        ("/events/3/then/deploy/name", "must be a name of its own: a parachute is deployed once, this one by event 1"),
+        ("/events/2/then/deploy/name", "must be unique: event 0 deploys a parachute of this name"),
+        ("/events/3/then/deploy/name", "must be unique: event 1 deploys a parachute of this name"),
         ("/events/2/then/release/1", &format!("{unknown}\"mane\"")),
         ("/events/2/then/release/2", &format!("{unknown}\"\"")),
     ];
@@ -361,8 +378,13 @@ async fn columns_of_heating_and_mass_are_there_where_the_case_has_them() {
     let steady = Steady::new().await;
     let columns = ["convective_heat_flux", "radiative_heat_flux", "heat_load", "wall_temperature", "mass"];
     let request = with(&capsule(), "/output", json!({"columns": columns}));
-    let details =
-        ["needs heating", "needs heating", "needs heating", "needs heating", "needs an event that changes it"];
+    let details = [
+        "requires heating",
+        "requires heating",
+        "requires heating",
+        "requires heating",
+        "needs an event that changes it",
+    ];
     let expected = columns.iter().zip(details).enumerate();
     let expected: Vec<_> = expected
         .map(|(index, (name, needs))| (format!("/output/columns/{index}"), format!("{name} {needs}")))
@@ -378,8 +400,8 @@ async fn columns_of_heating_and_mass_are_there_where_the_case_has_them() {
 async fn a_theory_knows_neither_events_nor_heating() {
     let steady = Steady::new().await;
     let theory = with(&flight("geodetic"), "/solution", "loh");
-    let heating = ("/heating", "must not be given: the theories know no heating");
-    let events = ("/events", "must be left out: the theory knows one vehicle, without thrust");
+    let heating = ("/heating", "must not be given: the theories do not include heating");
+    let events = ("/events", "must be omitted: the theory assumes one vehicle without thrust");
     let mark = json!([then(&json!({}))]);
     steady.refused_at("/analytic", &with(&theory, "/heating", json!({})), &[heating]).await;
     steady.refused_at("/analytic", &with(&theory, "/events", mark.clone()), &[events]).await;
@@ -398,7 +420,7 @@ async fn a_theory_knows_neither_events_nor_heating() {
         events,
         ("/vehicle/nose_radius", "is required"),
         ("/stop/ceiling", "must be greater than the stop altitude"),
-        ("/vehicle/aerodynamics/lift_coefficient", "without lift there is no glide"),
+        ("/vehicle/aerodynamics/lift_coefficient", "the theory requires lift"),
     ];
     steady.refused_at("/analytic", &request, &expected).await;
     // That a flight ends earlier is no matter to a theory.
@@ -419,7 +441,7 @@ async fn what_waits_for_an_event_waits_for_one_that_may_happen() {
     };
     let unknown = "must be the name of an event of the case, got \"main\"";
     refused(json!([named("drogue"), waiting("main", 1.0)]), &[("/events/1/when/event", unknown)]).await;
-    let several = "must be the name of one event, got \"drogue\", the name of 2";
+    let several = "must be the name of exactly one event, got \"drogue\", the name of 2 events";
     refused(json!([named("drogue"), named("drogue"), waiting("drogue", 1.0)]), &[("/events/2/when/event", several)])
         .await;
     let circle = "must not be an event that waits";
@@ -441,9 +463,9 @@ async fn conditions_need_what_their_quantities_do() {
     let steady = Steady::new().await;
     for quantity in ["heat_flux", "heat_load", "wall_temperature"] {
         let request = with(&capsule(), "/events", json!([{"when": condition(quantity, "rises_through", 1.0)}]));
-        steady.refused_at("/simulate", &request, &[("/events/0/when/quantity", "needs heating")]).await;
+        steady.refused_at("/simulate", &request, &[("/events/0/when/quantity", "requires heating")]).await;
     }
     let rest = with(&capsule(), "/initial_state/speed", 0);
     let request = with(&rest, "/stop", json!({"when": [condition("downrange", "rises_through", 1.0)]}));
-    steady.refused_at("/simulate", &request, &[("/stop/when/0/quantity", "needs an initial heading")]).await;
+    steady.refused_at("/simulate", &request, &[("/stop/when/0/quantity", "requires an initial heading")]).await;
 }

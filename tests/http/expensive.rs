@@ -108,7 +108,7 @@ fn once_the_flag_is_raised_no_flight_begins() {
     for (name, request) in models().into_iter().chain(events()) {
         let problem = fly(&endless(&request), true).map_err(|error| error.problem());
         let detail = problem.expect_err(name).detail;
-        assert_eq!(detail, "the flight cannot be finished: interrupted at t = 0 s", "{name}");
+        assert_eq!(detail, "the flight cannot be completed: interrupted at t = 0 s", "{name}");
     }
 }
 
@@ -171,9 +171,13 @@ fn however_many_faults_there_are_a_hundred_are_told() {
     ] {
         let problem = fly(&request, false).expect_err(name).problem();
         assert_eq!(problem.errors.len(), 101, "{name}");
-        assert_eq!(problem.detail, "the request has more than 100 faults", "{name}");
+        assert_eq!(problem.detail, "more than 100 problems in the request", "{name}");
         let last = problem.errors.last().unwrap();
-        assert_eq!((&*last.pointer, &*last.detail), ("", "there are more faults than these 100"), "{name}");
+        assert_eq!(
+            (&*last.pointer, &*last.detail),
+            ("", "more than 100 problems; the others are not listed"),
+            "{name}"
+        );
         assert!(problem.to_json().len() < BODY_LIMIT / 32, "{name}: {} bytes", problem.to_json().len());
     }
 }

@@ -124,18 +124,18 @@ async fn the_frames_of_the_earth_need_a_date_on_the_earth() {
                 })
             };
             let mut bad = vec![
-                (without(&good, "/epoch"), at, "needs an epoch"),
+                (without(&good, "/epoch"), at, "requires an epoch"),
                 (with(&good, "/planet", conversion("eci")["planet"].clone()), at, "is a frame of the Earth"),
             ];
             for epoch in ["1899-12-31T23:59:59Z", "1900-01-01T00:59:59+01:00", "2101-01-01T00:00:00Z"] {
-                bad.push((with(&good, "/epoch", epoch), at, "needs an epoch from 1900 to 2100, got one of "));
+                bad.push((with(&good, "/epoch", epoch), at, "requires an epoch from 1900 to 2100, got the year "));
             }
             for (name, value) in [("sidereal_time", json!(0)), ("sidereal_angle", json!(0))] {
                 let request = with(&good, &format!("/state/{name}"), value);
                 bad.push((
                     request,
                     if name == "sidereal_time" { "/state/sidereal_time" } else { "/state/sidereal_angle" },
-                    "must be left out",
+                    "must be omitted",
                 ));
             }
             for (request, pointer, phrase) in bad {
@@ -274,7 +274,7 @@ async fn an_unbound_orbit_has_no_mean_anomaly() {
         let answer = good_answer(&steady.service, "/convert", &request).await;
         assert_eq!(answer["derived"]["mean_anomaly"], json!(null));
         let by_mean = with(&without(&request, "/state/true_anomaly"), "/state/mean_anomaly", 0.5);
-        let phrase = format!("needs a bound orbit, of an eccentricity below 1, got {eccentricity}");
+        let phrase = format!("requires an eccentricity below 1, got {eccentricity}");
         steady.refused_at("/convert", &by_mean, &[("/state/mean_anomaly", &phrase)]).await;
     }
 }

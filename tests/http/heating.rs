@@ -163,12 +163,12 @@ async fn a_peak_outside_the_range_of_its_correlation_is_warned_of() {
         (
             of_radiation,
             "radiative_heat_flux",
-            "Relation of Tauber and Sutton is made for a nose radius from 0.3 to 3 m: at its peak heat flux it is 5 m (at ",
+            "Relation of Tauber and Sutton is valid for a nose radius from 0.3 to 3 m: at its peak heat flux it is 5 m (at ",
         ),
         (
             of_convection,
             "convective_heat_flux",
-            "Relation of Detra, Kemp and Riddell is made for a speed relative to the air from 0 to 8000 m/s: at its peak heat flux it is ",
+            "Relation of Detra, Kemp and Riddell is valid for a speed relative to the air from 0 to 8000 m/s: at its peak heat flux it is ",
         ),
     ] {
         assert!(warning["detail"].as_str().unwrap().starts_with(says), "{warning}");

@@ -57,7 +57,7 @@ async fn a_client_that_sends_too_much_is_told_when_to_come_back() {
     assert!((990..=1000).contains(&seconds), "{seconds}");
     assert_eq!(
         refused.json()["detail"],
-        format!("this client may send no more requests now; try again in {seconds} s")
+        format!("this client has reached its request limit; try again in {seconds} s")
     );
     assert_eq!(told(&refused.headers, "ratelimit"), "\"client\";r=0;t=3000");
     assert!(!told(&refused.headers, "x-request-id").is_empty());

@@ -221,8 +221,8 @@ async fn faults_of_columns_are_named() {
             "/output/columns/1",
             "thrust needs an event that switches a thrust on",
         ),
-        (json!({"columns": ["mach"]}), "/output/columns/0", "mach needs an atmosphere that has a speed of sound"),
-        (json!({"columns": ["time", "pressure"]}), "/output/columns/1", "an atmosphere that has a pressure"),
+        (json!({"columns": ["mach"]}), "/output/columns/0", "mach needs an atmosphere with a speed of sound"),
+        (json!({"columns": ["time", "pressure"]}), "/output/columns/1", "an atmosphere with a pressure"),
         (json!({"columns": ["time", "utc"]}), "/output/columns/1", "utc needs an epoch"),
     ] {
         steady.refused_at("/simulate", &with(&capsule(), "/output", output), &[(pointer, phrase)]).await;
@@ -232,8 +232,8 @@ async fn faults_of_columns_are_named() {
     steady.refused_at("/simulate", &several, &expected).await;
     let analytic = with_all(&capsule(), [("/solution", json!("loh")), ("/output", json!({"columns": ["time"]}))]);
     let expected = [
-        ("/output/columns", "columns of its own"),
-        ("/vehicle/aerodynamics/lift_coefficient", "without lift there is no glide"),
+        ("/output/columns", "the columns of this response are fixed"),
+        ("/vehicle/aerodynamics/lift_coefficient", "the theory requires lift"),
     ];
     steady.refused_at("/analytic", &analytic, &expected).await;
 }
@@ -300,7 +300,7 @@ async fn faults_of_tables_stand_at_their_numbers() {
                     "/vehicle/aerodynamics/angle_of_attack",
                     json!([0, 0, 0.1]),
                     "/vehicle/aerodynamics/angle_of_attack/1",
-                    "must be greater than the 0",
+                    "must be greater than the previous entry, 0",
                 ),
                 (
                     "/vehicle/aerodynamics/lift_coefficient",
@@ -340,7 +340,7 @@ async fn faults_of_tables_stand_at_their_numbers() {
                 json!([{"base_altitude": 1e4, "density": 1, "scale_height": 7e3},
                 {"base_altitude": 0, "density": 1, "scale_height": 7e3}]),
                 "/atmosphere/layers/1/base_altitude",
-                "must be greater than the 10000 before it, got 0",
+                "must be greater than the previous entry, 10000, got 0",
             )],
         ),
         (
@@ -418,8 +418,8 @@ async fn faults_of_schedules_are_named() {
         (json!([0]), vec![("", "must be a number or an object with a schedule, got an array")]),
         (json!({"at": [0], "value": [0]}), vec![("/type", "is required; it must be one of schedule")]),
         (schedule("time", json!([0, -1]), json!([0, 0])), vec![("/at/1", "must be at least 0, got -1")]),
-        (schedule("time", json!([1, 1]), json!([0, 0])), vec![("/at/1", "must be greater than the 1 before it")]),
-        (schedule("altitude", json!([-10]), json!([9])), vec![("/value/0", "were degrees meant?")]),
+        (schedule("time", json!([1, 1]), json!([0, 0])), vec![("/at/1", "must be greater than the previous entry, 1")]),
+        (schedule("altitude", json!([-10]), json!([9])), vec![("/value/0", "for degrees, set")]),
         (
             schedule("altitude", json!([2e12]), json!([0, 1])),
             vec![("/at/0", "must be between -1e12 and 1e12"), ("/value", "must have as many entries as at, 1, got 2")],
@@ -500,8 +500,8 @@ async fn faults_of_all_models_come_in_one_answer() {
         ("/vehicle/reference_area", "is not a field here"),
         ("/vehicle/aerodynamics/ballistic_coefficient", "is required"),
         ("/vehicle/aerodynamics/lift_to_drag", "must be a number, got a string"),
-        ("/control/bank_angle/at/1", "must be greater than the 1 before it, got 0"),
-        ("/control/bank_angle/value/0", "were degrees meant?"),
+        ("/control/bank_angle/at/1", "must be greater than the previous entry, 1, got 0"),
+        ("/control/bank_angle/value/0", "for degrees, set"),
         ("/control/angle_of_attack", "must be a number or an object with a schedule, got null"),
         ("/output/columns/2", "got \"tim\""),
     ];
@@ -542,7 +542,7 @@ async fn a_theory_wants_one_scale_height_and_constant_coefficients() {
         &with(&flight("geodetic"), "/solution", json!("loh")),
         [("/density_factor", json!(0)), ("/atmosphere/surface_density", json!(0))],
     );
-    let phrase = "the theory is of flight through air";
+    let phrase = "the theory requires air";
     let expected = [("/density_factor", phrase), ("/atmosphere/surface_density", phrase)];
     steady.refused_at("/analytic", &thin, &expected).await;
 
@@ -552,10 +552,10 @@ async fn a_theory_wants_one_scale_height_and_constant_coefficients() {
         json!({"type": "exponential", "surface_density": 1.2, "scale_height": 7000}),
     );
     let no_lift = with(&ballistic, "/vehicle/aerodynamics/lift_to_drag", json!(0));
-    let expected = [("/vehicle/aerodynamics/lift_to_drag", "without lift there is no glide")];
+    let expected = [("/vehicle/aerodynamics/lift_to_drag", "the theory requires lift")];
     steady.refused_at("/analytic", &no_lift, &expected).await;
     let steep = with(&ballistic, "/solution", json!("steep_ballistic"));
-    let expected = [("/vehicle/aerodynamics/lift_to_drag", "the ballistic theory knows no lift, got 0.3")];
+    let expected = [("/vehicle/aerodynamics/lift_to_drag", "the ballistic theory assumes no lift, got 0.3")];
     steady.refused_at("/analytic", &steep, &expected).await;
     let answer = good_answer(&steady.service, "/analytic", &ballistic).await;
     assert_eq!(codes(&answer), ["bank_angle_left_out", "wind_left_out"]);

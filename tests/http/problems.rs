@@ -43,22 +43,22 @@ async fn a_request_that_cannot_be_read_gets_its_problem() {
         (
             post_json("/simulat", &capsule()),
             json!({"type": "/problems/not-found", "title": "Not found", "status": 404,
-                "detail": "there is nothing at /simulat; see /docs"}),
+                "detail": "no resource at /simulat; see /docs"}),
         ),
         (
             get,
             json!({"type": "/problems/method-not-allowed", "title": "Method not allowed", "status": 405,
-                "detail": "/simulate does not answer to this method; see /docs"}),
+                "detail": "/simulate does not support this method; see /docs"}),
         ),
         (
             post_json("/simulate?format=xml", &capsule()),
             json!({"type": "/problems/not-acceptable", "title": "Not acceptable", "status": 406,
-                "detail": "this answer comes as json or csv or geojson or kml or czml, not as \"xml\""}),
+                "detail": "the response is available as json or csv or geojson or kml or czml, not as \"xml\""}),
         ),
         (
             post_json("/simulate?formt=csv", &capsule()),
             json!({"type": "/problems/invalid-query", "title": "Invalid query string", "status": 400,
-                "detail": "the query string may have one parameter, format"}),
+                "detail": "the query string may contain only one parameter, format"}),
         ),
         (
             post("/simulate", "application/json", "{\"vehicle\": {\"mass\": }}"),
@@ -73,13 +73,13 @@ async fn a_request_that_cannot_be_read_gets_its_problem() {
         (
             post("/simulate", "application/json", " ".repeat(4097)),
             json!({"type": "/problems/payload-too-large", "title": "Payload too large", "status": 413,
-                "detail": "the body is longer than the 4096 bytes allowed"}),
+                "detail": "the body exceeds the limit of 4096 bytes"}),
         ),
         (
             post("/simulate", "text/plain", capsule().to_string()),
             json!({"type": "/problems/unsupported-media-type", "title": "Unsupported media type", "status": 415,
-                "detail": "the body must be declared as application/json, not as text/plain; with curl: \
-                    -H 'content-type: application/json'"}),
+                "detail": "content-type must be application/json, got text/plain; with curl: -H 'content-type: \
+                           application/json'"}),
         ),
     ] {
         assert_eq!(steady.refused(request).await, expected);
@@ -94,21 +94,21 @@ async fn an_invalid_case_gets_its_problem() {
         [("/vehicle/mass", json!(-13)), ("/vehicle/colour", json!("red")), ("/initial_state/heading", json!(30))],
     );
     let expected = json!({
-        "type": "/problems/invalid-case", "title": "Not a valid case", "status": 422,
-        "detail": "the request has 3 faults",
+        "type": "/problems/invalid-case", "title": "Case not valid", "status": 422,
+        "detail": "3 problems in the request",
         "errors": [
             {"pointer": "/vehicle/mass", "detail": "must be greater than 0, got -13"},
             {"pointer": "/vehicle/colour",
                 "detail": "is not a field here; the fields are mass, reference_area, aerodynamics, nose_radius"},
-            {"pointer": "/initial_state/heading", "detail": "must be between -6.28319 and \
-                6.28319, got 30 (radians); were degrees meant? Then send \"angle_unit\": \"deg\""},
+            {"pointer": "/initial_state/heading", "detail": "must be between -6.28319 and 6.28319, got 30 (radians); \
+                                                             for degrees, set \"angle_unit\": \"deg\""},
         ],
     });
     assert_eq!(steady.refused(post_json("/simulate", &request)).await, expected);
 
     let request = with(&capsule(), "/stop", json!({"altitude": 2e5}));
     let problem = steady.refused(post_json("/simulate", &request)).await;
-    assert_eq!(problem["detail"], "the request has 1 fault");
+    assert_eq!(problem["detail"], "1 problem in the request");
 }
 
 #[tokio::test]
@@ -125,9 +125,9 @@ async fn too_many_rows_get_their_problem() {
     ] {
         let expected = json!({
             "type": "/problems/row-limit", "title": "Too many rows", "status": 422,
-            "detail": "the trajectory would have more than the 50 rows allowed",
+            "detail": "the trajectory exceeds the limit of 50 rows",
             "errors": [{"pointer": format!("/output/{way}"),
-                "detail": "would give more than the 50 rows allowed; ask for fewer, for example with count"}],
+                "detail": "gives more than 50 rows; request fewer, for example with count"}],
         });
         let request = with(&capsule(), "/output", json!({way: value}));
         assert_eq!(steady.refused(post_json("/simulate", &request)).await, expected);
@@ -144,7 +144,7 @@ async fn too_many_rows_get_their_problem() {
 async fn the_default_limit_of_rows_is_a_hundred_thousand() {
     let steady = Steady::new().await;
     let problem = steady.refused(post_json("/simulate", &with(&capsule(), "/output", json!({"count": 100_001})))).await;
-    assert_eq!(problem["detail"], "the trajectory would have more than the 100000 rows allowed");
+    assert_eq!(problem["detail"], "the trajectory exceeds the limit of 100000 rows");
 }
 
 #[tokio::test]
@@ -156,7 +156,7 @@ async fn an_endless_orbit_gets_its_problem() {
     let problem = steady.refused(post_json("/simulate", &request)).await;
     assert_eq!(problem["type"], "/problems/step-limit", "{problem}");
     let detail = problem["detail"].as_str().unwrap();
-    let begin = "the flight cannot be finished: the flight took more than 100000 integration steps; it got to t = ";
+    let begin = "the flight cannot be completed: the flight needs more than 100000 integration steps; it reached t = ";
     let reached = detail.strip_prefix(begin).and_then(|rest| rest.strip_suffix(" s")).unwrap();
     let reached: f64 = reached.parse().unwrap();
     assert!(reached > 1e7 && reached < 1e9, "{detail}");
@@ -180,7 +180,8 @@ async fn each_singularity_of_the_spherical_equations_gets_its_problem() {
         let expected = json!({
             "type": "/problems/singularity", "title": "Singular equations", "status": 422,
             "detail": format!(
-                "the flight cannot be finished: the spherical equations of motion are singular {place}, reached at t = 0 s"
+                "the flight cannot be completed: the spherical equations of motion are singular {place}, reached at t \
+                 = 0 s"
             ),
             "errors": [{"pointer": "/solver/formulation",
                 "detail": "use \"cartesian\", which has no such singularity"}],
@@ -222,7 +223,7 @@ async fn motion_too_fast_to_follow_gets_its_problem() {
     let request = with(&capsule(), "/vehicle/mass", 1e-100);
     let problem = steady.refused(post_json("/simulate", &request)).await;
     assert_eq!(problem["type"], "/problems/step-size", "{problem}");
-    let begin = "the flight cannot be finished: the motion changes too fast to be followed at t = ";
+    let begin = "the flight cannot be completed: the motion changes too fast to be integrated at t = ";
     assert!(problem["detail"].as_str().unwrap().starts_with(begin), "{problem}");
 }
 
@@ -238,12 +239,12 @@ async fn thrust_that_burns_the_whole_vehicle_gets_its_problem() {
         let expected = json!({
             "type": "/problems/no-mass-left", "title": "No mass left", "status": 422, "detail": problem["detail"],
             "errors": [{"pointer": "/events",
-                "detail": "switch the thrust off by an event, or say how much propellant there is"}],
+                "detail": "switch the thrust off with an event, or set its propellant"}],
         });
         assert_eq!(problem, expected);
         let detail = problem["detail"].as_str().unwrap();
-        let begin = "the flight cannot be finished: by t = ";
-        let end = " s the thrust has burnt all the mass that there was";
+        let begin = "the flight cannot be completed: the thrust has burnt the entire mass by t = ";
+        let end = " s";
         let gone: f64 = detail.strip_prefix(begin).and_then(|rest| rest.strip_suffix(end)).unwrap().parse().unwrap();
         assert!(gone > 56.0 && gone <= 57.0, "{detail}");
     }
@@ -273,7 +274,8 @@ async fn thrust_that_brakes_the_vehicle_to_rest_gets_its_problem() {
     assert_eq!(problem["type"], "/problems/no-direction");
     assert_eq!(problem["errors"][0]["pointer"], "/events/1/then/thrust/along");
     let detail = problem["detail"].as_str().unwrap();
-    let begin = "the flight cannot be finished: the thrust of event 1 has no direction from t = 14.298 s on, at an altitude of 856.29 m";
+    let begin = "the flight cannot be completed: the thrust of event 1 has no direction from t = 14.298 s on, at an \
+                 altitude of 856.29 m";
     assert!(detail.starts_with(begin), "{detail}");
     // A condition on the speed 0 is met there, and the flight ends by it.
     let stops = with(&braking(), "/stop", json!({"when": [{"quantity": "speed", "falls_through": 0}]}));
@@ -285,8 +287,8 @@ async fn thrust_that_brakes_the_vehicle_to_rest_gets_its_problem() {
 async fn a_flight_longer_than_allowed_gets_its_problem() {
     let service = Service::with(Config { deadline: Duration::from_millis(1), ..Config::default() });
     let request = with(&orbiting(), "/stop/time", 1e9);
-    let expected = json!({"type": "/problems/deadline-exceeded", "title": "Out of time", "status": 504,
-        "detail": "the request took longer than the 0.001 s allowed"});
+    let expected = json!({"type": "/problems/deadline-exceeded", "title": "Time limit exceeded", "status": 504,
+        "detail": "the request exceeded the time limit of 0.001 s"});
     assert_eq!(problem(&service.post("/simulate", &request).await), expected);
 }
 
@@ -308,7 +310,7 @@ async fn a_full_service_gets_its_problem_and_is_soon_free_again() {
         tokio::task::yield_now().await;
     }
     let expected = json!({"type": "/problems/busy", "title": "Busy", "status": 503,
-        "detail": "the service is busy; try again in a second"});
+        "detail": "the service is busy; try again in 1 s"});
     let answer = service.post("/simulate", &capsule()).await;
     assert_eq!(problem(&answer), expected);
     assert_eq!(answer.headers[header::RETRY_AFTER], "1");

@@ -54,7 +54,7 @@ async fn a_value_just_outside_its_range_is_refused() {
             let request = with(&field.request, &field.pointer, value);
             let radians =
                 matches!(field.kind, Kind::Angle(_) | Kind::Command(_)) && field.request["angle_unit"] == "rad";
-            let phrase = if radians { "were degrees meant?" } else { "must be " };
+            let phrase = if radians { "for degrees, set" } else { "must be " };
             steady.refused_at(field.path, &request, &[(&field.pointer, phrase)]).await;
             count += 1;
         }

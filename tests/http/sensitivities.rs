@@ -201,12 +201,16 @@ async fn what_cannot_be_varied_or_given_is_refused() {
         .collect();
     let expected = [
         ("/sensitivities/of/0/at/event", "must be the name of an event of the case, got \"nothing\""),
-        ("/sensitivities/of/1/quantity", "pressure needs an atmosphere that has a pressure: us76, or a table with one"),
+        (
+            "/sensitivities/of/1/quantity",
+            "pressure needs an atmosphere with a pressure: us76, or a table with \
+                                          pressure",
+        ),
         ("/sensitivities/to/0", "must point to a number of the case, or to a list of numbers, got nothing"),
         ("/sensitivities/to/1", "must point to a number of the case, or to a list of numbers, got an object"),
         ("/sensitivities/to/2", "must point to a number of the case, or to a list of numbers, got \"a capsule\""),
-        ("/sensitivities/to/3", "must not point into /solver, which is no part of what flies"),
-        ("/sensitivities/to/4", "must not point into /output, which is no part of what flies"),
+        ("/sensitivities/to/3", "must not point into /solver, which is not part of the simulated case"),
+        ("/sensitivities/to/4", "must not point into /output, which is not part of the simulated case"),
         ("/sensitivities/to/6", "/vehicle/mass is given twice"),
         ("/sensitivities/to/8", "/control/bank_angle/value/1 is given twice"),
         ("/sensitivities/to/9", "must point to a number of the case, or to a list of numbers, got an object"),
@@ -340,13 +344,13 @@ async fn faulty_dispersions_are_refused() {
             json!({"pointer": ["/vehicle/mass", "/density_factor"],
                 "factor": {"type": "multivariate_normal", "covariance": [[1, 2], [2, 1]]}}),
             "/factor/covariance",
-            "must have no negative eigenvalue: the least one of its correlations is -1.000e0",
+            "must have no negative eigenvalue: the least eigenvalue of its correlation matrix is -1.000e0",
         ),
         (
             json!({"pointer": ["/vehicle/mass", "/density_factor"],
                 "factor": {"type": "multivariate_normal", "covariance": [[1, 0.5], [0.4, 1]]}}),
             "/factor/covariance/1/0",
-            "must be that of row 0 and column 1, 0.5: a covariance is symmetric; got 0.4",
+            "must equal the element in row 0 and column 1, 0.5: a covariance is symmetric; got 0.4",
         ),
         (
             json!({"pointer": ["/vehicle/mass", "/vehicle/mass"],

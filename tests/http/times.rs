@@ -227,8 +227,8 @@ fn leap_seconds_are_read_at_every_offset_and_nowhere_else() {
         assert!(read(&format!("{}:60Z", day(2016, 12, 31).at(minute))).is_err(), "minute {minute}");
     }
     let fault = read("2026-06-30T23:59:60Z").unwrap_err();
-    let expected = "must be an RFC 3339 time whose second is 60 in a leap second alone, such as \"2016-12-31T23:59:60Z\", got \
-                    \"2026-06-30T23:59:60Z\"";
+    let expected = "must be an RFC 3339 time whose second is 60 only in a leap second, such as \
+                    \"2016-12-31T23:59:60Z\", got \"2026-06-30T23:59:60Z\"";
     assert_eq!(fault, expected);
 }
 

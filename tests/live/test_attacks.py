@@ -321,8 +321,8 @@ def test_garbage_after_a_request_is_told_in_its_turn(service):
 def test_sighup_changes_nothing_and_sigquit_ends_as_sigterm_does(start):
     service = start()
     service.process.send_signal(signal.SIGHUP)
-    wait_for(lambda: "SIGHUP changes nothing" in service.log.read_text())
+    wait_for(lambda: "SIGHUP has no effect" in service.log.read_text())
     assert service.simulate(QUICK).status == 200
     service.process.send_signal(signal.SIGQUIT)
     assert service.process.wait(PATIENCE) == 0
-    assert "going down" in service.log.read_text()
+    assert "shutting down" in service.log.read_text()

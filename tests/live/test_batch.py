@@ -111,7 +111,7 @@ def test_out_of_time_before_the_first_line_is_a_504_and_later_a_line(start):
     lines = [json.loads(line) for line in answer.body.splitlines()]
     assert len(lines) == 100
     assert lines[-1]["type"] == "/problems/deadline-exceeded"
-    assert lines[-1]["detail"] == "the request took longer than the 1 s allowed"
+    assert lines[-1]["detail"] == "the request exceeded the time limit of 1 s"
     hurried = start("--workers", "1", "--batch-deadline", "0.001")
     assert hurried.request("POST", "/simulate/batch", json.dumps([ORBIT]), JSON).problem()["status"] == 504
     service.wait_until_idle()

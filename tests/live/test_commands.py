@@ -63,7 +63,7 @@ def test_a_case_that_is_not_valid_is_told_and_ends_with_1(file):
     assert result.returncode == 1
     assert result.stdout == ""
     lines = result.stderr.splitlines(keepends=True)
-    assert lines[0] == f"reentry: {path}: Not a valid case: the request has 2 faults\n"
+    assert lines[0] == f"reentry: {path}: Case not valid: 2 problems in the request\n"
     assert lines[1] == MASS
     assert lines[2].startswith("  /colour: is not a field here")
     assert len(lines) == 3
@@ -74,9 +74,9 @@ def test_a_case_that_is_not_valid_is_told_and_ends_with_1(file):
     [
         ('{"vehicle": }', "Not JSON: the body is not JSON: expected value at line 1 column 13\n"),
         ("[1,", "Not JSON: the body is not JSON: EOF while parsing a value at line 1 column 3\n"),
-        ("5", "Not a valid case: the request has 1 fault\n  must be an object, got a number\n"),
-        (json.dumps({**CASE, "output": {"count": 1_000_001}}), "Too many rows: the trajectory would have more than the 1000000 rows"),
-        (json.dumps({**ORBIT, "stop": {"time": 1e9}}), "Too many steps: the flight cannot be finished"),
+        ("5", "Case not valid: 1 problem in the request\n  must be an object, got a number\n"),
+        (json.dumps({**CASE, "output": {"count": 1_000_001}}), "Too many rows: the trajectory exceeds the limit of 1000000 rows"),
+        (json.dumps({**ORBIT, "stop": {"time": 1e9}}), "Too many steps: the flight cannot be completed"),
     ],
 )
 def test_every_failure_of_a_case_ends_with_1(file, text, told):
@@ -139,9 +139,9 @@ def test_a_list_of_cases_has_a_line_each_in_order(service, file):
     for line, answer in zip(lines, batch):
         assert reproducible(json.loads(line)) == reproducible(json.loads(answer))
     told = result.stderr.splitlines(keepends=True)
-    assert told[0] == rf'reentry: {path}: case 2 "a \"bad\"\none": Not a valid case: the request has 2 faults' + "\n"
+    assert told[0] == rf'reentry: {path}: case 2 "a \"bad\"\none": Case not valid: 2 problems in the request' + "\n"
     assert told[1] == MASS
-    assert told[3] == f"reentry: {path}: case 3: Not a valid case: the request has 1 fault\n"
+    assert told[3] == f"reentry: {path}: case 3: Case not valid: 1 problem in the request\n"
     assert len(told) == 5
 
 
@@ -157,7 +157,7 @@ def test_a_list_of_good_cases_ends_with_0(file):
 def test_an_empty_list_is_a_fault_as_it_is_in_a_batch(file):
     result = run("simulate", path := file([]))
     assert (result.returncode, result.stdout) == (1, "")
-    assert result.stderr == f"reentry: {path}: Not a valid case: the request has 1 fault\n  must have at least 1 case, got none\n"
+    assert result.stderr == f"reentry: {path}: Case not valid: 1 problem in the request\n  must have at least 1 case, got none\n"
 
 
 def test_the_place_of_a_fault_of_json_is_that_in_the_case(file):
@@ -193,7 +193,7 @@ def test_a_list_of_cases_with_events_has_their_columns_and_a_case_without_them_f
     assert "events" not in lines[1]
     result = run("simulate", path := file([eventful, CASE, eventful]), "--format", "csv")
     assert result.returncode == 1
-    assert result.stderr.startswith(f'reentry: {path}: case 1 "TARGET reference case 1": Not a valid case: the request has 1 fault\n  /output/columns: ')
+    assert result.stderr.startswith(f'reentry: {path}: case 1 "TARGET reference case 1": Case not valid: 1 problem in the request\n  /output/columns: ')
     rows = list(csv.reader(io.StringIO(result.stdout)))
     assert rows[0][0] == "case"
     assert rows[0][-5:] == ["heat_load", "wall_temperature", "mass", "ground_range", "ground_distance"]

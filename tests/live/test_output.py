@@ -91,8 +91,8 @@ def test_rows_for_which_there_is_no_memory_are_refused(file):
     command = [BINARY, "simulate", path, "--row-limit", "10000000"]
     result = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, preexec_fn=with_little, env=clean_environment())
     assert (result.returncode, result.stdout) == (1, "")
-    assert "Too many rows: the trajectory would have 10000000 rows, and there is no memory for so many\n" in result.stderr
-    assert "  /output: gives 10000000 rows, more than there is memory for" in result.stderr
+    assert "Too many rows: the trajectory has 10000000 rows, too many for the available memory\n" in result.stderr
+    assert "  /output: gives 10000000 rows, too many for the available memory" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -162,10 +162,10 @@ def test_faults_are_told_up_to_a_count(file):
         result = run("simulate", file(value))
         assert result.returncode == 1
         lines = result.stderr.splitlines()
-        assert lines[0].endswith("Not a valid case: the request has more than 100 faults")
+        assert lines[0].endswith("Case not valid: more than 100 problems in the request")
         assert lines[1] == "  /output/times/0: must be a number, got a string"
         assert len(lines) == most
-        assert lines[-1] == ("  there are more faults than these 100" if most == 102 else "  and more, which are told where the case stands alone")
+        assert lines[-1] == ("  more than 100 problems; the others are not listed" if most == 102 else "  more problems; run the case alone to list them all")
 
 
 def test_a_name_of_a_mebibyte_is_shortened_for_people_alone(file):

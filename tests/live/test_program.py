@@ -85,4 +85,4 @@ def test_a_body_that_never_comes_keeps_the_service_for_its_grace_only(start):
         assert client.recv(1000).startswith(b"HTTP/1.1 100")
         service.process.send_signal(signal.SIGTERM)
         assert service.process.wait(PATIENCE) == 0
-    assert "still running at the end of the grace" in service.log.read_text()
+    assert "still running at the end of the grace period" in service.log.read_text()

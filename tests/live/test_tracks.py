@@ -151,7 +151,7 @@ def test_a_list_gives_a_map_a_line(tmp_path):
         assert is_map(first) and is_map(last) and problem["status"] == 422
     refused = run("simulate", str(path), "--format", "kml")
     assert (refused.returncode, refused.stdout) == (1, "")
-    assert refused.stderr.startswith(f"reentry: {path}: Not a valid case: the request has 1 fault\n  must be one case where KML is asked for")
+    assert refused.stderr.startswith(f"reentry: {path}: Case not valid: 1 problem in the request\n  must be a single case for KML")
 
 
 @pytest.mark.parametrize("format", FORMATS)

@@ -135,7 +135,7 @@ impl Compute {
                             Ok(Ok(())) => {}
                             Ok(Err(_)) => return,
                             Err(_) => {
-                                tracing::info!("the batch ended early, as its reader took nothing");
+                                tracing::info!("the batch ended early: its client read nothing");
                                 return;
                             }
                         }

@@ -33,7 +33,7 @@ pub struct Config {
     #[arg(long, env = "REENTRY_BODY_LIMIT", default_value_t = 1 << 20)]
     pub body_limit: usize,
 
-    /// Maximum number of batches that compute at once, half of them from one client; further batches are refused with
+    /// Maximum number of batches that compute at once, at most half of them from one client; further batches are refused with
     /// 503 or 429
     #[arg(long, env = "REENTRY_BATCHES", default_value_t = 16, value_parser = up_to(1 << 20))]
     pub batches: usize,
@@ -55,7 +55,7 @@ pub struct Config {
     pub compress_above: u64,
 
     /// Memory for bodies and responses in bytes: one eighth for bodies of batches, one sixteenth for other bodies, the
-    /// rest for responses; one client may use half of each. Requests that need more are refused with 503, or with 429
+    /// rest for responses; one client may use at most half of each. Requests that need more are refused with 503, or with 429
     /// if other clients still have room
     #[arg(long, env = "REENTRY_MEMORY", default_value_t = 256 << 20)]
     pub memory: usize,

@@ -122,10 +122,10 @@ impl Metrics {
     pub fn new(workers: usize) -> Self {
         let mut registry = Registry::with_prefix("reentry");
         let build = Info::new([("version", env!("CARGO_PKG_VERSION"))]);
-        registry.register("build", "The program", build);
+        registry.register("build", "Version of the program", build);
         let all: Gauge = Gauge::default();
         all.set(signed(workers));
-        registry.register("workers", "Threads that compute", all);
+        registry.register("workers", "Worker threads", all);
         let mut metrics = Self {
             registry,
             requests: Family::default(),
@@ -157,30 +157,51 @@ impl Metrics {
 
     fn register(&mut self) {
         let r = &mut self.registry;
-        r.register("requests", "Requests that are over", self.requests.clone());
-        let help = "From the head of a request to the last byte of its answer, the client's taking it included";
+        r.register("requests", "Completed requests", self.requests.clone());
+        let help = "Time from the head of a request to the last byte of its response, including the time that the \
+                    client takes to read it";
         r.register_with_unit("request_duration", help, Unit::Seconds, self.durations.clone());
-        r.register("requests_in_flight", "Requests that are not over", self.in_flight.clone());
-        r.register_with_unit("request", "Bodies received", Unit::Bytes, self.received.clone());
-        r.register_with_unit("response", "Bodies sent", Unit::Bytes, self.sent.clone());
-        r.register("jobs_queued", "Jobs that wait for a worker", self.queued.clone());
-        r.register("jobs_running", "Jobs that a worker has", self.running.clone());
-        let help = "Jobs that have given way to others, or wait for memory";
+        r.register("requests_in_flight", "Requests in progress", self.in_flight.clone());
+        r.register_with_unit("request", "Size of received request bodies", Unit::Bytes, self.received.clone());
+        r.register_with_unit("response", "Size of sent response bodies", Unit::Bytes, self.sent.clone());
+        r.register("jobs_queued", "Jobs waiting for a worker", self.queued.clone());
+        r.register("jobs_running", "Jobs running on a worker", self.running.clone());
+        let help = "Jobs suspended in favour of others or waiting for memory";
         r.register("jobs_suspended", help, self.suspended.clone());
-        r.register_with_unit("queue_wait", "What jobs waited for a worker", Unit::Seconds, self.waits.clone());
-        r.register_with_unit("compute", "What jobs computed", Unit::Seconds, self.compute.clone());
-        r.register("cancellations", "Jobs that nobody waited for any more, or not in time", self.cancelled.clone());
+        r.register_with_unit("queue_wait", "Time that jobs waited for a worker", Unit::Seconds, self.waits.clone());
+        r.register_with_unit("compute", "Computing time of jobs", Unit::Seconds, self.compute.clone());
+        r.register(
+            "cancellations",
+            "Jobs cancelled because the client disconnected or the time limit was exceeded",
+            self.cancelled.clone(),
+        );
         r.register("batch_cases", "Cases of batches", self.cases.clone());
-        r.register("integration_steps", "Accepted steps of finished flights", self.steps.clone());
-        r.register("integration_steps_rejected", "Steps that were tried again", self.rejected_steps.clone());
-        r.register("evaluations", "Right-hand sides of finished flights", self.evaluations.clone());
+        r.register("integration_steps", "Accepted integration steps of completed flights", self.steps.clone());
+        r.register(
+            "integration_steps_rejected",
+            "Rejected integration steps of completed flights",
+            self.rejected_steps.clone(),
+        );
+        r.register(
+            "evaluations",
+            "Evaluations of the equations of motion of completed flights",
+            self.evaluations.clone(),
+        );
         r.register("rows", "Rows of trajectories", self.rows.clone());
         r.register("connections", "Open connections", self.connections.clone());
-        r.register("connections_stalled", "Connections closed as their answer was not taken", self.stalled.clone());
-        r.register_with_unit("held", "Bodies and answers in memory", Unit::Bytes, self.held.clone());
-        r.register("rate_limit_clients", "Clients that the rate limit remembers", self.clients.clone());
-        r.register("log_lines_lost", "Lines of the log that nobody took in time", self.lost_lines.clone());
-        r.register_with_unit("resident_memory", "Memory of the program", Unit::Bytes, self.resident.clone());
+        r.register(
+            "connections_stalled",
+            "Connections closed because the client did not read its response",
+            self.stalled.clone(),
+        );
+        r.register_with_unit("held", "Memory used by request bodies and responses", Unit::Bytes, self.held.clone());
+        r.register("rate_limit_clients", "Clients tracked by the rate limit", self.clients.clone());
+        r.register(
+            "log_lines_lost",
+            "Log lines lost because standard error was not read in time",
+            self.lost_lines.clone(),
+        );
+        r.register_with_unit("resident_memory", "Resident memory of the program", Unit::Bytes, self.resident.clone());
     }
 
     /// The text.

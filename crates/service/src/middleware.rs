@@ -192,7 +192,7 @@ pub fn refuse_head(app: &AppState, peer: SocketAddr, status: StatusCode) -> Vec<
     app.metrics.request_over(OTHER, error.outcome(), Duration::ZERO, body.len() as u64);
     let (id, client) = (id.to_str().unwrap_or_default(), peer.ip().to_canonical());
     let (status, bytes) = (status.as_u16(), body.len());
-    tracing::info!(id, %client, status, bytes, "refused what is no request");
+    tracing::info!(id, %client, status, bytes, "refused a malformed request head");
     let mut headers = HeaderMap::from_iter(PROTECTION);
     headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
     headers.insert(header::CONTENT_LENGTH, bytes.into());

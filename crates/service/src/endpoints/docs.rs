@@ -48,7 +48,7 @@ pub async fn file(
         Ok(Some(file)) => file,
         Ok(None) => return Err(ApiError::NotFound(uri.path().to_owned())),
         Err(error) => {
-            tracing::error!(%error, "a file of the documentation could not be made");
+            tracing::error!(%error, "cannot create a file of the documentation");
             return Err(ApiError::Internal);
         }
     };

@@ -74,7 +74,7 @@ impl Check {
     /// The check as a sentence.
     pub fn told(&self) -> String {
         let [_, case, quantity, expected, got, difference, allowed, _] = line(self, &mut Notes::default());
-        format!("{case}, {quantity}: expected {expected}, got {got}, {difference} off, {allowed} allowed")
+        format!("{case}, {quantity}: expected {expected}, got {got}, difference {difference}, allowed {allowed}")
     }
 }
 

@@ -156,7 +156,8 @@ impl Warning {
                     format!("from {least} {unit} on")
                 };
                 let detail = format!(
-                    "{correlation} is made for a {quantity} {bounds}: at its peak heat flux it is {value} {unit} (at {})",
+                    "{correlation} is valid for a {quantity} {bounds}: at its peak heat flux it is {value} {unit} (at \
+                     {})",
                     seconds(time)
                 );
                 ("outside_range", detail)
@@ -166,8 +167,8 @@ impl Warning {
             }
             trajectory::Warning::ThrustWithoutDirection { event, time } => {
                 let detail = format!(
-                    "Thrust of event {event} has no direction (at {}): at rest there is no velocity, and in vertical flight nothing \
-                     level, to act along; it acts as soon as there is",
+                    "Thrust of event {event} has no direction (at {}): its direction is undefined at rest or in \
+                     vertical flight. It acts once the direction is defined",
                     seconds(time)
                 );
                 ("no_direction", detail)
@@ -181,8 +182,8 @@ impl Warning {
             }
             trajectory::Warning::NoDirection { event, time } => {
                 let detail = format!(
-                    "Impulse of event {event} has no effect (at {}): at rest there is no velocity, and in vertical flight nothing \
-                     level, to act along",
+                    "Impulse of event {event} has no effect (at {}): its direction is undefined at rest or in \
+                     vertical flight",
                     seconds(time)
                 );
                 ("no_direction", detail)
@@ -205,7 +206,7 @@ impl Warning {
 
     /// There are no orbital elements.
     pub fn rectilinear() -> Self {
-        let detail = "Orbit has no elements: the inertial motion is along the radius, or so nearly that elements would not hold it";
+        let detail = "Orbit has no elements: the inertial motion is along the radius vector, or too close to it";
         Self::new("rectilinear_motion", detail)
     }
 
@@ -243,12 +244,16 @@ fn outside(table: TableId, edge: f64, above: bool, unit: AngleUnit, since: &str)
         TableId::Atmosphere => {
             let edge = length(edge);
             format!(
-                "Atmosphere table {ends} at {edge}: {beyond} it the logarithm of the density goes on in a straight line ({since})"
+                "Atmosphere table {ends} at {edge}: {beyond} it the logarithm of the density is extrapolated linearly \
+                 ({since})"
             )
         }
         TableId::Us76 => {
-            let holds =
-                if above { "the density falls on with its scale height there" } else { "its lowest layer goes on" };
+            let holds = if above {
+                "the density falls with the scale height at that altitude"
+            } else {
+                "its lowest layer is continued"
+            };
             format!("Atmosphere us76 {ends} at {}: {beyond} it {holds} ({since})", length(edge))
         }
         TableId::Wind => {
@@ -309,19 +314,21 @@ mod tests {
                 TableId::Atmosphere,
                 1e5,
                 true,
-                "Atmosphere table ends at 100 km: above it the logarithm of the density goes on in a straight line (from 52.9 s, at 109.1 km)",
+                "Atmosphere table ends at 100 km: above it the logarithm of the density is extrapolated linearly \
+                 (from 52.9 s, at 109.1 km)",
             ),
             (
                 TableId::Us76,
                 1e6,
                 true,
-                "Atmosphere us76 ends at 1000 km: above it the density falls on with its scale height there (from 52.9 s, at 109.1 km)",
+                "Atmosphere us76 ends at 1000 km: above it the density falls with the scale height at that altitude \
+                 (from 52.9 s, at 109.1 km)",
             ),
             (
                 TableId::Us76,
                 -5e3,
                 false,
-                "Atmosphere us76 begins at -5 km: below it its lowest layer goes on (from 52.9 s, at 109.1 km)",
+                "Atmosphere us76 begins at -5 km: below it its lowest layer is continued (from 52.9 s, at 109.1 km)",
             ),
             (
                 TableId::Wind,
