@@ -194,8 +194,12 @@ pub static COLUMNS: [Column; 44] = [
         Requirement::SpeedOfSound,
         |point| point.loads.mach,
     ),
-    angle("bank_angle", "As commanded.", |point| point.bank_angle),
-    angle("angle_of_attack", "As commanded.", |point| point.angle_of_attack),
+    angle(
+        "bank_angle",
+        "Commanded bank angle; at 0, lift points upward, a positive angle tilts it to the left of the flight direction.",
+        |point| point.bank_angle,
+    ),
+    angle("angle_of_attack", "Commanded angle of attack.", |point| point.angle_of_attack),
     maybe(
         "downrange",
         "Distance from the initial ground point along the great circle of the initial heading, m, on the sphere with \

@@ -240,43 +240,43 @@ pub struct Sensitivities {
 /// in its `planet_relative` form with `radius`.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct Gradient {
-    /// By mass, per kg.
+    /// Derivative by mass, per kg.
     #[schema(required = true)]
     pub mass: Option<f64>,
-    /// By reference area, per m².
+    /// Derivative by reference area, per m².
     #[schema(required = true)]
     pub reference_area: Option<f64>,
-    /// By lift coefficient, per unit of the coefficient.
+    /// Derivative by lift coefficient, per unit of the coefficient.
     #[schema(required = true)]
     pub lift_coefficient: Option<f64>,
-    /// By drag coefficient, per unit of the coefficient.
+    /// Derivative by drag coefficient, per unit of the coefficient.
     #[schema(required = true)]
     pub drag_coefficient: Option<f64>,
-    /// By bank angle, per radian or degree.
+    /// Derivative by bank angle, per radian or degree.
     #[schema(required = true)]
     pub bank_angle: Option<f64>,
-    /// By density at altitude 0, per kg/m³; null unless the atmosphere is exponential.
+    /// Derivative by density at altitude 0, per kg/m³; null unless the atmosphere is exponential.
     #[schema(required = true)]
     pub surface_density: Option<f64>,
-    /// By density factor, per unit of the factor.
+    /// Derivative by density factor, per unit of the factor.
     #[schema(required = true)]
     pub density_factor: Option<f64>,
-    /// By initial radius, per m.
+    /// Derivative by initial radius, per m.
     #[schema(required = true)]
     pub radius: Option<f64>,
-    /// By initial longitude, per radian or degree.
+    /// Derivative by initial longitude, per radian or degree.
     #[schema(required = true)]
     pub longitude: Option<f64>,
-    /// By initial geocentric latitude at the same radius, per radian or degree.
+    /// Derivative by initial geocentric latitude at the same radius, per radian or degree.
     #[schema(required = true)]
     pub geocentric_latitude: Option<f64>,
-    /// By initial speed, per m/s.
+    /// Derivative by initial speed, per m/s.
     #[schema(required = true)]
     pub speed: Option<f64>,
-    /// By initial flight-path angle, per radian or degree.
+    /// Derivative by initial flight-path angle, per radian or degree.
     #[schema(required = true)]
     pub flight_path_angle: Option<f64>,
-    /// By initial heading, per radian or degree.
+    /// Derivative by initial heading, per radian or degree.
     #[schema(required = true)]
     pub heading: Option<f64>,
 }
