@@ -156,14 +156,9 @@ async fn every_problem_and_every_warning_has_a_page_in_html_and_json() {
         let document = json.json();
         let named = if folder == "problems" { ("type", path.as_str()) } else { ("code", name.as_str()) };
         assert_eq!(document[named.0], named.1);
-        for member in ["title", "description"] {
-            let text = document[member].as_str().unwrap();
-            assert!(!text.is_empty(), "{path} has no {member}");
-            assert!(
-                String::from_utf8_lossy(&html.body)
-                    .contains(text.split('`').next().unwrap().lines().next().unwrap_or_default())
-            );
-        }
+        assert!(document["description"].as_str().unwrap().contains("What to do:"), "{path} does not say what to do");
+        let title = document["title"].as_str().unwrap();
+        assert!(String::from_utf8_lossy(&html.body).contains(title), "{path}");
     }
     assert_eq!(service.get("/problems/nothing").await.status, StatusCode::NOT_FOUND);
     assert_eq!(service.get("/guide/nothing").await.status, StatusCode::NOT_FOUND);
@@ -175,7 +170,7 @@ fn every_part_of_a_case_has_a_section() {
     let chapter = fs::read_to_string(root().join("crates/service/guide/case.md")).unwrap();
     let document = document();
     let request = document["components"]["schemas"]["SimulateRequest"]["properties"].as_object().unwrap();
-    for field in request.keys().filter(|field| !["name", "density_factor", "echo"].contains(&field.as_str())) {
+    for field in request.keys() {
         assert!(chapter.contains(&format!("{{#{field}}}")), "guide/case.md has no section {field}");
     }
 }

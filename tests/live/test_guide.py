@@ -16,7 +16,7 @@ DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "crates/service/guide").glob("*
 FENCE = re.compile(r"^(?P<indent> *)```(?P<info>[^\n]*)\n(?P<text>.*?)^(?P=indent)```$", re.DOTALL | re.MULTILINE)
 RUN = {"sh": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}
 # Blocks that are not run: answers and fragments of cases, commands that install or need Docker, other languages.
-OTHER = {"json", "text", "console", "python client", "ts", "rust", "yaml", "json case"}
+OTHER = {"json", "text", "console", "python client", "ts", "rust", "yaml", "html", "json case"}
 
 
 def blocks(document):

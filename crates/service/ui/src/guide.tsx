@@ -9,11 +9,8 @@ export function Explained({ at, name }: { at: string; name: string }) {
   );
 }
 
-/** Fields of a case that the guide explains in the section of another. */
-const WITHIN: Record<string, string> = { name: 'output', echo: 'output', density_factor: 'atmosphere' };
-
 /** Where the guide explains the field of a pointer. */
 export function chapterOf(pointer: string): string {
   const field = pointer.split('/')[1] ?? '';
-  return field ? `guide/case#${WITHIN[field] ?? field}` : 'guide/case';
+  return field ? `guide/case#${field}` : 'guide/case';
 }

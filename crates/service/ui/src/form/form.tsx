@@ -53,14 +53,11 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
       <div class="fold-body">
         <p class="quiet fold-guide">
           Guide:
-          {names
-            .map((name) => ({ name, chapter: chapterOf(pointer([name])) }))
-            .filter(({ name, chapter }) => chapter.endsWith(`#${name}`))
-            .map(({ name, chapter }) => (
-              <a key={name} href={address(chapter)} target="_blank" rel="noopener">
-                {name.replaceAll('_', ' ')}
-              </a>
-            ))}
+          {names.map((name) => (
+            <a key={name} href={address(chapterOf(pointer([name])))} target="_blank" rel="noopener">
+              {name.replaceAll('_', ' ')}
+            </a>
+          ))}
         </p>
         {names.map((name) => (
           <Item
