@@ -13,7 +13,7 @@ use pulldown_latex::config::{DisplayMode, RenderConfig};
 use serde_json::{Value, json};
 
 /// What the pages are made of.
-pub const SOURCES: [&str; 3] = ["guide", "ui/src/tokens.css", "ui/src/icon.svg"];
+pub(crate) const SOURCES: [&str; 3] = ["guide", "ui/src/tokens.css", "ui/src/icon.svg"];
 /// The table of contents: its headings and lists are the navigation of every page, in this order.
 const CONTENTS: &str = "index";
 /// Chapters of which every section answers at a path of its own, and the member that holds the section's name in JSON.
@@ -39,7 +39,7 @@ struct Section {
 }
 
 /// Writes all files of the guide below a folder, and gives their paths.
-pub fn write(root: &Path) -> io::Result<Vec<PathBuf>> {
+pub(crate) fn write(root: &Path) -> io::Result<Vec<PathBuf>> {
     let chapters = chapters()?;
     let shell = fs::read_to_string("guide/page.html")?.replace("{navigation}", &navigation()?);
     let page = |title: &str, content: &str| shell.replace("{title}", title).replace("{content}", content).into_bytes();
@@ -59,9 +59,10 @@ pub fn write(root: &Path) -> io::Result<Vec<PathBuf>> {
         let chapter = chapters.iter().find(|chapter| chapter.name == name);
         let chapter = chapter.ok_or_else(|| io::Error::other(format!("the guide has no chapter {name}")))?;
         for section in chapter.sections.iter().filter(|section| section.html.starts_with("<h2")) {
-            let more = format!(r#"<p><a href="../guide/{name}">All {name}</a></p>"#);
-            files
-                .push((format!("{name}/{}.html", section.id), page(&section.heading, &(section.html.clone() + &more))));
+            // A page has a heading of the first rank.
+            let content = section.html.replace("<h2", "<h1").replace("</h2>", "</h1>");
+            let content = format!(r#"{content}<p><a href="../guide/{name}">All {name}</a></p>"#);
+            files.push((format!("{name}/{}.html", section.id), page(&section.heading, &content)));
             let value = if member == "type" { format!("/problems/{}", section.id) } else { section.id.clone() };
             let document = json!({member: value, "title": section.heading, "description": section.text.trim(),
                 "guide": format!("/guide/{name}#{}", section.id)});

@@ -276,7 +276,8 @@ impl Covariance {
                 .collect(),
         };
         // Beyond that of a direction of which nothing is known, an angle that goes around has none to first order.
-        let greatest = |column: &Column| if column.turns() { unit.from_radians(TAU) / 12_f64.sqrt() } else { f64::INFINITY };
+        let greatest =
+            |column: &Column| if column.turns() { unit.from_radians(TAU) / 12_f64.sqrt() } else { f64::INFINITY };
         let deviation = |column: &Column, row: usize| {
             finite(variance(row, row).sqrt()).filter(|deviation| *deviation <= greatest(column))
         };
