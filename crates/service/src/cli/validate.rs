@@ -24,7 +24,7 @@ enum Format {
     Text,
     /// All checks with all digits, as GET /validation returns them
     Json,
-    /// One line per case, for a README
+    /// A table with one line per case
     Markdown,
 }
 
