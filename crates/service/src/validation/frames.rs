@@ -15,8 +15,8 @@ fn places() -> Vec<Check> {
         group: Group::Frames,
         case: "25 geodetic places".to_owned(),
         source: "pymap3d 3.2.0 and pyerfa 2.0.1.5, which agree to 1e-8 m".to_owned(),
-        note: "The greatest deviation of all. Allowed: 1 µm, some roundings of the distance from the centre, and as much on the \
-               ground."
+        note: "The largest deviation. Allowed: 1 µm, a few rounding errors of the distance from the centre, and the \
+               same on the ground."
             .to_owned(),
     };
     let metres = Expected::within(0.0, 1e-6).rounding(1e-7);
@@ -47,16 +47,17 @@ fn orbits() -> Vec<Check> {
         group: Group::Frames,
         case: "25 orbits".to_owned(),
         source: "hapsira 0.18.0".to_owned(),
-        note: "The greatest deviation of all; of the angles in the orbit as much of it as node and periapsis, from which they count, \
-               are defined by inclination and eccentricity. Allowed: 1e-12, some hundred roundings."
+        note: "The largest deviation; angles in the orbit are weighted by how well inclination and eccentricity \
+               define the node and the periapsis from which they are measured. Allowed: 1e-12, some hundred rounding \
+               errors."
             .to_owned(),
     };
     let part = Expected::within(0.0, 1e-12).rounding(1e-13);
     let degrees = Expected::within(0.0, 1e-10).rounding(1e-11);
     let quantities = [
-        ("inertial position, in parts of it", "", part),
-        ("inertial velocity, in parts of it", "", part),
-        ("semi-latus rectum, in parts of it", "", part),
+        ("inertial position, relative", "", part),
+        ("inertial velocity, relative", "", part),
+        ("semi-latus rectum, relative", "", part),
         ("eccentricity", "", part),
         ("inclination", "°", degrees),
         ("node, argument and anomaly", "°", degrees),
@@ -94,8 +95,8 @@ fn epochs() -> Vec<Check> {
         group: Group::Frames,
         case: "106 epochs from 1900 to 2100".to_owned(),
         source: "pyerfa 2.0.1.5: c2t06a and gmst82, without polar motion and with UT1 = UTC".to_owned(),
-        note: "The greatest deviation of all, of places on the equator and at the pole. Allowed: 10 m, for the terms of the nutation \
-               that are left out."
+        note: "The largest deviation, of places on the equator and at the pole. Allowed: 10 m, for the omitted terms \
+               of the nutation."
             .to_owned(),
     };
     let metres = Expected::within(0.0, 10.0).rounding(1e-3);

@@ -48,9 +48,10 @@ fn origin(case: &str) -> Origin {
         group: Group::CheckCases,
         case: format!("check case {}: {}", case.trim_start_matches('0'), text(&file["cases"][case]["title"])),
         source: "NASA/TM-2015-218675, histories of the simulations 04, 05 and 06".to_owned(),
-        note: "With the constants that NASA prints, at the second at which the difference is greatest. Allowed: 1 cm of altitude and \
-               2 cm of place, as far as the simulations are from each other by their air, and 15 cm and 20 cm of simulation 06 in \
-               case 9, where it is so far from both others; of case 10 the spread that is told, and a unit of the last digit."
+        note: "With the constants that NASA prints, at the second of the largest difference. Allowed: 1 cm of \
+               altitude and 2 cm of place, the spread of the simulations caused by their atmospheres; 15 cm and 20 cm \
+               for simulation 06 in case 9, which differs that much from both others; for case 10, the published \
+               spread plus one unit of the last digit."
             .to_owned(),
     }
 }
@@ -67,11 +68,11 @@ fn beside(origin: &Origin, simulation: &str, flown: &[Second], history: &[Second
     };
     let pairs = || history.iter().enumerate().map(|(time, theirs)| (time, flown.get(time).unwrap_or(&nowhere), theirs));
     let altitudes = pairs().map(|(time, ours, theirs)| {
-        let quantity = format!("altitude at {time} s, of simulation {simulation}");
+        let quantity = format!("altitude at {time} s, simulation {simulation}");
         origin.check(quantity, "m", Expected::within(theirs.geodetic_altitude, altitude), ours.geodetic_altitude)
     });
     let places = pairs().filter(|(_, _, theirs)| theirs.position[0].is_finite()).map(|(time, ours, theirs)| {
-        let quantity = format!("place at {time} s, off simulation {simulation}");
+        let quantity = format!("place at {time} s, difference from simulation {simulation}");
         origin.check(quantity, "m", Expected::within(0.0, place), apart(ours.position, theirs.position))
     });
     nearest(altitudes).into_iter().chain(nearest(places)).collect()

@@ -35,7 +35,7 @@ impl Validation {
             let [_, name, quantity, rest @ ..] = line(nearest, &mut notes);
             let _ = writeln!(text, "| {name} | {} | {quantity} | {} |", case.len(), rest.join(" | "));
         }
-        text += "\n| entry that was flown | quantity | published | got | difference | uncertainty | source |\n";
+        text += "\n| real flight | quantity | published | got | difference | uncertainty | source |\n";
         text += "| --- | --- | --- | --- | --- | --- | --- |\n";
         for check in plausible {
             let [_, cells @ ..] = line(check, &mut notes);
@@ -49,9 +49,10 @@ impl Validation {
         let [missed, checks] =
             [self.misses().count(), self.checks.iter().filter(|check| check.passed.is_some()).count()];
         let rest = self.checks.len() - checks;
-        let missed = if missed == 0 { "all passed".to_owned() } else { format!("{missed} missed") };
+        let missed = if missed == 0 { "all passed".to_owned() } else { format!("{missed} failed") };
         format!(
-            "{checks} checks against references: {missed}. {rest} plausibilities, whose differences are told and do not count."
+            "{checks} checks against references: {missed}. {rest} comparisons with real flights, for information \
+             only."
         )
     }
 }
@@ -61,11 +62,11 @@ impl Group {
         match self {
             Self::Thesis => "The thesis's cases",
             Self::Conversions => "The thesis's initial conditions",
-            Self::Theories => "The thesis's theories beside its flights",
+            Self::Theories => "The thesis's theories compared with its flights",
             Self::CheckCases => "NASA's check cases",
             Self::StandardAir => "The U.S. Standard Atmosphere, 1976",
             Self::Frames => "Coordinates and orbital elements",
-            Self::Flights => "Entries that were flown: plausibilities",
+            Self::Flights => "Real flights, for information only",
         }
     }
 }
@@ -104,7 +105,7 @@ fn line<'a>(check: &'a Check, notes: &mut Notes<'a>) -> Line {
         _ => number::exact(check.expected, unit),
     };
     let allowed = check.allowed.map_or(NONE.to_owned(), |allowed| number::short(allowed, 3, unit));
-    let mark = if check.is_miss() { "MISSED" } else { "" };
+    let mark = if check.is_miss() { "FAILED" } else { "" };
     let note = notes.number_of(check).to_string();
     [mark.to_owned(), check.case.clone(), check.quantity.clone(), expected, got, difference, allowed, note]
 }

@@ -33,10 +33,10 @@ fn table(program: Program, case: &str, table: &str, altitude: impl Fn(f64) -> f6
     let origin = Origin {
         group: Group::StandardAir,
         case: case.to_owned(),
-        source: "U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562, Tables I to III, as others copied them".to_owned(),
-        note: "Of all printed points the one nearest to its limit. Allowed: half a unit of the last printed digit, of pressures, \
-               which the report cuts off, a whole one; above 86 km 6e-5 of the number more, by which the report's sums are from \
-               its integrals."
+        source: "U.S. Standard Atmosphere, 1976, NOAA-S/T 76-1562, Tables I to III, from secondary copies".to_owned(),
+        note: "The printed point nearest to its limit. Allowed: half a unit of the last printed digit; for pressures, \
+               which the report truncates, one unit; above 86 km, in addition 6e-5 of the value, the difference \
+               between the report's sums and its integrals."
             .to_owned(),
     };
     let mut points: [Vec<Check>; COLUMNS.len()] = Default::default();

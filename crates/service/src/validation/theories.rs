@@ -25,9 +25,11 @@ pub(super) fn checks(program: Program, cases: &[ThesisCase]) -> Result<Vec<Check
         let origin = Origin {
             group: Group::Theories,
             case: format!("{}, {solution}", super::thesis::named(title)),
-            source: "Jameson 2006, chapter V, its misprints mended; deviations found independently of this program".to_owned(),
-            note: "A theory leaves out gravity, rotation or curvature, and is off by so much. Allowed: half a unit of the last \
-                   digit that is told; where a bound is told, all of it."
+            source: "Jameson 2006, chapter V, with its misprints corrected; deviations computed independently of this \
+                     program"
+                .to_owned(),
+            note: "The deviation results from the gravity, rotation or curvature that the theory neglects. Allowed: \
+                   half a unit of the last digit given; if only a bound is given, the whole bound."
                 .to_owned(),
         };
         for row in &anchors {

@@ -9,8 +9,9 @@ use super::{Check, Expected, Group, Origin, Program, convert};
 use crate::error::ApiError;
 
 /// What the promise of the API allows, and what follows from it.
-const PROMISE: &str = "Allowed: of the place of impact 1 m, which the API promises at its default tolerance; of the time what \
-    a metre takes at that speed; of the deceleration what a metre of altitude changes in the density.";
+const PROMISE: &str = "Allowed: for the place of impact 1 m, the accuracy that the API promises at its default \
+                       tolerance; for the time, the time to travel 1 m at the impact speed; for the deceleration, the \
+                       effect of the change of density over 1 m of altitude.";
 
 /// The flights, at the default tolerance.
 pub(super) fn flights(program: Program, cases: &[ThesisCase]) -> Result<Vec<Check>, ApiError> {
