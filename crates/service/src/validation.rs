@@ -310,12 +310,12 @@ mod tests {
             Validation::of(vec![check(10.0, 0.5, 10.0), check(10.0, 0.5, 12.0), check(10.0, 0.5, f64::NAN)]);
         assert!(!validation.passed);
         let told: Vec<_> = validation.misses().map(Check::told).collect();
-        let [far, none] = ["got 12.0 m, 2 m off", "got -, - off"];
-        assert_eq!(told, [far, none].map(|got| format!("a case, a length: expected 10.0 m, {got}, 0.5 m allowed")));
+        let [far, none] = ["got 12.0 m, difference 2 m", "got -, difference -"];
+        assert_eq!(told, [far, none].map(|got| format!("a case, a length: expected 10.0 m, {got}, allowed 0.5 m")));
         let text = validation.to_text();
-        assert_eq!(text.matches("MISSED").count(), 2, "{text}");
+        assert_eq!(text.matches("FAILED").count(), 2, "{text}");
         assert!(text.ends_with(
-            "3 checks against references: 2 missed. 0 plausibilities, whose differences are told and do not count.\n"
+            "3 checks against references: 2 failed. 0 comparisons with real flights, for information only.\n"
         ));
         // The line of the case is of the one that is furthest from what is expected.
         assert!(validation.to_markdown().contains("| a case | 3 | a length | 10.0 m | - | - | 0.5 m | 1 |"));
