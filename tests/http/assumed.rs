@@ -178,7 +178,7 @@ async fn a_speed_of_sound_has_a_mach_number_and_no_temperature() {
     steady.refused_at("/simulate", &case, &[("/output/columns/1", "temperature needs")]).await;
     let mute = without(&model("table of sound"), "/atmosphere/speed_of_sound");
     let mute = with(&mute, "/stop/when/0", json!({"quantity": "mach", "falls_through": 1}));
-    steady.refused_at("/simulate", &mute, &[("/stop/when/0/quantity", "needs a Mach number")]).await;
+    steady.refused_at("/simulate", &mute, &[("/stop/when/0/quantity", "requires a Mach number")]).await;
 }
 
 #[tokio::test]

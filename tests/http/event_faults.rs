@@ -80,7 +80,7 @@ async fn conditions_and_coefficients_by_mach_number_need_a_temperature() {
                 ],
             );
             let phrase =
-                "needs a Mach number: the atmosphere must be us76, or a table with temperature or speed_of_sound";
+                "requires a Mach number: the atmosphere must be us76, or a table with temperature or speed_of_sound";
             let pointers = ["/events/0/when/quantity", "/events/1/then/aerodynamics/type", "/stop/when/1/quantity"];
             steady.refused_at("/simulate", &request, &pointers.map(|pointer| (pointer, phrase))).await;
             good_answer(&steady.service, "/simulate", &with(&request, "/atmosphere", json!({"type": "us76"}))).await;
@@ -366,9 +366,9 @@ async fn faults_across_events_heating_and_columns_come_in_one_answer() {
         ("/vehicle/nose_radius", "is required"),
         ("/events/0/when/falls_through", "never falls"),
         ("/events/0/then/reference_area", "is required"),
-        ("/events/1/when/quantity", "needs a Mach number"),
+        ("/events/1/when/quantity", "requires a Mach number"),
         ("/stop/ceiling", "must be greater than the stop altitude"),
-        ("/output/columns/1", "mass needs an event that changes it"),
+        ("/output/columns/1", "mass requires an event that changes it"),
     ];
     steady.refused_at("/simulate", &request, &expected).await;
 }
@@ -383,7 +383,7 @@ async fn columns_of_heating_and_mass_are_there_where_the_case_has_them() {
         "requires heating",
         "requires heating",
         "requires heating",
-        "needs an event that changes it",
+        "requires an event that changes it",
     ];
     let expected = columns.iter().zip(details).enumerate();
     let expected: Vec<_> = expected

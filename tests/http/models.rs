@@ -219,11 +219,11 @@ async fn faults_of_columns_are_named() {
         (
             json!({"columns": ["time", "thrust"]}),
             "/output/columns/1",
-            "thrust needs an event that switches a thrust on",
+            "thrust requires an event that switches a thrust on",
         ),
-        (json!({"columns": ["mach"]}), "/output/columns/0", "mach needs an atmosphere with a speed of sound"),
+        (json!({"columns": ["mach"]}), "/output/columns/0", "mach requires an atmosphere with a speed of sound"),
         (json!({"columns": ["time", "pressure"]}), "/output/columns/1", "an atmosphere with a pressure"),
-        (json!({"columns": ["time", "utc"]}), "/output/columns/1", "utc needs an epoch"),
+        (json!({"columns": ["time", "utc"]}), "/output/columns/1", "utc requires an epoch"),
     ] {
         steady.refused_at("/simulate", &with(&capsule(), "/output", output), &[(pointer, phrase)]).await;
     }
@@ -455,7 +455,7 @@ async fn faults_of_schedules_are_named() {
 #[tokio::test]
 async fn what_needs_a_mach_number_needs_a_temperature() {
     let steady = Steady::new().await;
-    let phrase = "needs a Mach number";
+    let phrase = "requires a Mach number";
     let by_mach = json!({"type": "schedule", "against": "mach", "at": [1], "value": [0]});
     let control = json!({"bank_angle": by_mach, "angle_of_attack": by_mach});
     for atmosphere in [

@@ -43,7 +43,7 @@ async fn a_body_is_declared_as_json() {
     }
     let undeclared = request(Method::POST, "/convert", &[], body());
     let problem = steady.refused(undeclared).await;
-    assert!(problem["detail"].as_str().unwrap().contains("not as nothing"), "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("got nothing"), "{problem}");
 
     for right in [
         &b"application/json"[..],

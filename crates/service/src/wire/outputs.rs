@@ -170,7 +170,7 @@ impl FlightOutput {
     pub(super) fn fault(&self, pointer: &str, known: AvailableQuantities, events: &[Event]) -> Option<Fault> {
         let Self::Quantity { column, at } = self else { return None };
         if let Some(missing) = column.missing(known) {
-            return Some(Fault::new(format!("{pointer}/quantity"), format!("{} needs {missing}", column.name)));
+            return Some(Fault::new(format!("{pointer}/quantity"), format!("{} requires {missing}", column.name)));
         }
         let At::Event { event, .. } = at else { return None };
         let detail = match place_of(event, events) {

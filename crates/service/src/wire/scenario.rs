@@ -477,7 +477,7 @@ impl SimulateRequest {
         let columns = self.output.columns.iter().flatten().enumerate();
         let missing = columns.filter_map(|(index, column)| {
             let missing = column.missing(known)?;
-            Some(Fault::new(format!("/output/columns/{index}"), format!("{} needs {missing}", column.name)))
+            Some(Fault::new(format!("/output/columns/{index}"), format!("{} requires {missing}", column.name)))
         });
         missing.collect()
     }
