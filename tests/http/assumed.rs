@@ -175,7 +175,7 @@ async fn a_speed_of_sound_has_a_mach_number_and_no_temperature() {
     fly(&case).await;
     let steady = Steady::new().await;
     let case = with(&model("table of sound"), "/output/columns", json!(["mach", "temperature"]));
-    steady.refused_at("/simulate", &case, &[("/output/columns/1", "temperature needs")]).await;
+    steady.refused_at("/simulate", &case, &[("/output/columns/1", "temperature requires")]).await;
     let mute = without(&model("table of sound"), "/atmosphere/speed_of_sound");
     let mute = with(&mute, "/stop/when/0", json!({"quantity": "mach", "falls_through": 1}));
     steady.refused_at("/simulate", &mute, &[("/stop/when/0/quantity", "requires a Mach number")]).await;
