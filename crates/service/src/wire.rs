@@ -67,8 +67,8 @@ const ANGLE_UNITS: Words<AngleUnit> = Words {
     name: "AngleUnit",
     doc: "The unit of every angle of a request and of its answer.",
     words: &[
-        word("rad", AngleUnit::Rad, "radians").doc("Radians."),
-        word("deg", AngleUnit::Deg, "degrees").doc("Degrees."),
+        word("rad", AngleUnit::Rad, "Radians").doc("Radians."),
+        word("deg", AngleUnit::Deg, "Degrees").doc("Degrees."),
     ],
 };
 

@@ -49,10 +49,10 @@ pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
         "The kind of atmosphere.",
         &[
             variant("exponential", "Exponential", "One scale height.", &exponential),
-            variant("us76", "U.S. Standard Atmosphere, 1976", "The U.S. Standard Atmosphere, 1976.", &us76),
+            variant("us76", "U.S. Standard Atmosphere 1976", "The U.S. Standard Atmosphere, 1976.", &us76),
             variant(
                 "layered_exponential",
-                "Exponential in layers",
+                "Layered exponential",
                 "Layers of one scale height each.",
                 &layered_exponential,
             ),
@@ -81,7 +81,7 @@ fn exponential(object: &mut Object) -> Option<Atmosphere> {
     object.named("ExponentialAtmosphere", "Density ρ₀ e^(-h/H) at the altitude h along the radius vector.");
     let is_given = object.has("surface_density") & object.has("scale_height");
     let surface_density = object
-        .field("surface_density", "Density at the surface")
+        .field("surface_density", "Surface density")
         .doc("ρ₀, at altitude 0, kg/m³.")
         .unit("kg/m³")
         .default(EARTH_JAMESON[0])
@@ -101,7 +101,7 @@ fn exponential(object: &mut Object) -> Option<Atmosphere> {
 const PRESETS: Words<()> = Words {
     name: "LayersPreset",
     doc: "The layers whose numbers are known.",
-    words: &[word("earth_seven_layer", (), "Earth in seven layers")
+    words: &[word("earth_seven_layer", (), "Earth, 7 layers")
         .doc("The Earth's, in seven layers derived from `us76`, whose density they have at their bases of 0, 10, 43, 68, 82, 112 and 120 km: within \
               5 % of it up to 130 km, and thinner above, by 47 % at 150 km.")],
 };
@@ -136,7 +136,7 @@ fn layered_exponential(object: &mut Object) -> Option<Atmosphere> {
 fn layer(object: &mut Object) -> Option<Layer> {
     object.named("Layer", "A layer, up to the base of the next.");
     let base_altitude = object
-        .field("base_altitude", "Base")
+        .field("base_altitude", "Base altitude")
         .doc("Where it begins, m; greater than that of the layer before it.")
         .unit("m")
         .number(Bound::DISTANCE);
@@ -170,7 +170,7 @@ fn table(object: &mut Object) -> Option<Atmosphere> {
     let pressure =
         object.field("pressure", "Pressure").doc("Pa.").unit("Pa").optional().numbers(Bound::POSITIVE, ENTRIES);
     let speed_of_sound = object
-        .field("speed_of_sound", "Speeds of sound")
+        .field("speed_of_sound", "Speed of sound")
         .doc("m/s, in place of the one that follows from the temperature; not with `molar_mass` and `heat_capacity_ratio`. Beyond the altitudes it \
               stays as it is at the end.")
         .unit("m/s")

@@ -28,8 +28,8 @@ const INTERPOLATION: Words<Interpolation> = Words {
     name: "Interpolation",
     doc: "What a schedule does between its entries.",
     words: &[
-        word("linear", Interpolation::Linear, "Straight lines").doc("Straight lines."),
-        word("step", Interpolation::Step, "Steps").doc("An entry's value holds from it up to the next greater one."),
+        word("linear", Interpolation::Linear, "Linear").doc("Straight lines."),
+        word("step", Interpolation::Step, "Step").doc("An entry's value holds from it up to the next greater one."),
     ],
 };
 
@@ -74,14 +74,14 @@ fn schedule(object: &mut Object) -> Option<Schedule> {
 }
 
 fn entries(object: &mut Object) -> Option<Schedule> {
-    let against = object.field("against", "Against").doc("What it runs along.").word(&AGAINST);
+    let against = object.field("against", "Independent variable").doc("What it runs along.").word(&AGAINST);
     let bound = match against {
         Some(Against::Altitude) => Bound::DISTANCE,
         Some(Against::Time | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
         None => Bound::FINITE,
     };
     let at = object
-        .field("at", "At")
+        .field("at", "Breakpoint")
         .doc("Ascending, in the unit of the quantity; time, speed and Mach number at least 0.")
         .unit(against.map_or("", |against| AGAINST.unit_of(against)))
         .ascending()
@@ -94,7 +94,7 @@ fn entries(object: &mut Object) -> Option<Schedule> {
         object.field("value", "Angle").doc("The angles there, within ±2π (±360°).").angles(Bound::TURN, MOST_ENTRIES);
     let sound = object.equally_long("at", &["value"]);
     let interpolation = object
-        .field("interpolation", "In between")
+        .field("interpolation", "Interpolation")
         .doc("What it does between its entries.")
         .default("linear")
         .word(&INTERPOLATION);

@@ -41,7 +41,7 @@ pub(super) fn dispersion(object: &mut Object) -> Option<Dispersion> {
          together.",
     );
     let pointers = object
-        .field("pointer", "Number")
+        .field("pointer", "Parameter")
         .doc(
             "The JSON pointer of a number in the case, or of a list of numbers, which move together; for a multivariate distribution \
              one for each variable.",

@@ -72,7 +72,7 @@ pub static QUANTITIES: Words<Quantity> = Words {
             .unit(ANGLE)
             .doc("Of the velocity relative to the planet."),
         word("mass", Quantity::Mass, "Mass, kg").unit("kg").doc("Of the vehicle, kg."),
-        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").unit("m/s").doc("Relative to the air, m/s."),
+        word("air_speed", Quantity::AirSpeed, "Airspeed, m/s").unit("m/s").doc("Relative to the air, m/s."),
         word("inertial_speed", Quantity::InertialSpeed, "Inertial speed, m/s")
             .unit("m/s")
             .doc("Relative to inertial space, m/s."),
@@ -106,7 +106,7 @@ pub static QUANTITIES: Words<Quantity> = Words {
         word("deceleration", Quantity::Deceleration, "Deceleration, m/s²")
             .unit("m/s²")
             .doc("-dV/dt of the speed relative to the planet, m/s²."),
-        word("density", Quantity::Density, "Density, kg/m³").unit("kg/m³").doc("Of the air, kg/m³."),
+        word("density", Quantity::Density, "Air density, kg/m³").unit("kg/m³").doc("Of the air, kg/m³."),
     ],
 };
 
@@ -118,9 +118,9 @@ pub(super) fn event(object: &mut Object) -> Option<Event> {
          of their list, each on what the ones before it have made.",
     );
     let name = object.field("name", "Name").doc("Given back in the answer.").optional().text();
-    let when = object.field("when", "When").doc("When.").object(condition);
+    let when = object.field("when", "Trigger").doc("When.").object(condition);
     let then = object
-        .field("then", "Then")
+        .field("then", "Effect")
         .doc("What it changes; without anything it is a mark, whose state the answer tells.")
         .default(json!({}))
         .object(effect);
@@ -153,12 +153,12 @@ fn crossing(object: &mut Object) -> Option<Condition> {
     };
     let falling = value(
         "falls_through",
-        "falls through",
+        "Falls below",
         "The value, from above, in the unit of the quantity; an angle in `angle_unit`. Not for time.",
     );
     let rising = value(
         "rises_through",
-        "rises through",
+        "Rises above",
         "The value, from below, in the unit of the quantity; an angle in `angle_unit`.",
     );
     object.exactly_one(&["falls_through", "rises_through"]);
@@ -177,13 +177,10 @@ fn crossing(object: &mut Object) -> Option<Condition> {
 }
 
 fn after(object: &mut Object) -> Option<Condition> {
-    let event = object
-        .field("event", "or after the event")
-        .doc("The name of another event, which happens before.")
-        .optional()
-        .text();
+    let event =
+        object.field("event", "After event").doc("The name of another event, which happens before.").optional().text();
     let delay = object
-        .field("delay", "Delay after it")
+        .field("delay", "Delay after event")
         .doc("Seconds after that event.")
         .unit("s")
         .default(0.0)
@@ -196,23 +193,23 @@ fn after(object: &mut Object) -> Option<Condition> {
 fn effect(object: &mut Object) -> Option<Effect> {
     object.named("Effect", "What an event changes, from its instant on; what is left out stays as it is.");
     let mass = object
-        .field("mass", "Mass becomes")
+        .field("mass", "New mass")
         .doc("kg. A ballistic coefficient changes with it: the drag area stays.")
         .unit("kg")
         .optional()
         .number(Bound::POSITIVE);
     let reference_area = object.only_unless("aerodynamics/type", "ballistic", |object| {
         object
-            .field("reference_area", "Reference area becomes")
+            .field("reference_area", "New reference area")
             .doc("m². Not beside ballistic aerodynamics, nor where the vehicle has them and no event gives others.")
             .unit("m²")
             .optional()
             .number(Bound::NON_NEGATIVE)
     });
     let aerodynamics =
-        object.field("aerodynamics", "Aerodynamics become").doc("Lift and drag.").optional().object(aerodynamics);
+        object.field("aerodynamics", "New aerodynamics").doc("Lift and drag.").optional().object(aerodynamics);
     let impulse = object
-        .field("delta_v", "Impulse")
+        .field("delta_v", "Impulsive Δv")
         .doc("An impulsive change of velocity. It takes no propellant: give the mass after it as `mass`.")
         .optional()
         .object(impulse);
@@ -222,9 +219,9 @@ fn effect(object: &mut Object) -> Option<Effect> {
         .optional()
         .word_or(&THRUST_COMMAND, &OFF, |object| thrust(object).map(Engine::On));
     let parachute =
-        object.field("deploy", "Parachute").doc("A parachute that is deployed.").optional().object(parachute);
+        object.field("deploy", "Deploy parachute").doc("A parachute that is deployed.").optional().object(parachute);
     let released = object
-        .field("release", "Release")
+        .field("release", "Release parachutes")
         .doc("The names of parachutes that are cut off, before another is deployed. One that is not deployed then stays as it is, with a warning.")
         .optional()
         .texts(MOST_EVENTS);
@@ -237,7 +234,7 @@ fn impulse(object: &mut Object) -> Option<Impulse> {
     object.named("DeltaV", "A change of velocity at an instant.");
     let along = along(object, "Where to.");
     let speed_change = object
-        .field("value", "Change of speed")
+        .field("value", "Δv")
         .doc("m/s; negative against the direction, as a deorbit burn along the velocity is.")
         .unit("m/s")
         .number(Bound::VELOCITY);
@@ -292,18 +289,17 @@ const AXES: Words<ThrustAxis> = Words {
     name: "Axis",
     doc: "A direction that moves with the vehicle.",
     words: &[
-        word("velocity", ThrustAxis::Velocity, "the velocity")
-            .doc("Along the velocity relative to the rotating planet."),
-        word("radial", ThrustAxis::Radial, "the radius, outwards").doc("Away from the planet's centre."),
-        word("normal", ThrustAxis::Normal, "the normal, left")
+        word("velocity", ThrustAxis::Velocity, "Velocity").doc("Along the velocity relative to the rotating planet."),
+        word("radial", ThrustAxis::Radial, "Radial, outward").doc("Away from the planet's centre."),
+        word("normal", ThrustAxis::Normal, "Normal, left")
             .doc("Across both, level, to the left of the flight direction."),
-        word("horizontal", ThrustAxis::Horizontal, "the velocity’s level part")
+        word("horizontal", ThrustAxis::Horizontal, "Horizontal velocity")
             .doc("Along the level part of the velocity relative to the rotating planet."),
     ],
 };
 
 fn along(object: &mut Object, doc: &'static str) -> Option<ThrustAxis> {
-    object.field("along", "Along").doc(doc).word_or(&ALONG, &AXES, inertial_direction)
+    object.field("along", "Direction").doc(doc).word_or(&ALONG, &AXES, inertial_direction)
 }
 
 fn inertial_direction(object: &mut Object) -> Option<ThrustAxis> {

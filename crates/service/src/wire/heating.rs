@@ -29,9 +29,9 @@ const CONVECTIVE: Words<(Convective, bool)> = Words {
     doc: "Correlations of the convective flux in air, W/m², with the density ρ, kg/m³, the speed V relative to the air, m/s, and the nose radius r, \
           m.",
     words: &[
-        word("sutton_graves", (Convective::SUTTON_GRAVES, true), "Sutton and Graves")
+        word("sutton_graves", (Convective::SUTTON_GRAVES, true), "Sutton–Graves")
             .doc("1.7415e-4 √(ρ/r) V³; NASA TR R-376, for 2.1 to 15.2 km/s."),
-        word("detra_kemp_riddell", (Convective::DetraKempRiddell, true), "Detra, Kemp and Riddell")
+        word("detra_kemp_riddell", (Convective::DetraKempRiddell, true), "Detra–Kemp–Riddell")
             .doc("1.1035e8/√r √(ρ/1.225) (V/7924.8)^3.15; Jet Propulsion 27 (1957), up to 8 km/s."),
         word("chapman", (Convective::Chapman, true), "Chapman")
             .doc("1.1035e8/√r √(ρ/1.225) (V/7924.8)³; NASA TR R-11, up to 11.2 km/s."),
@@ -44,7 +44,7 @@ const RADIATIVE: Words<Radiative> = Words {
     doc: "Correlations of the radiative flux.",
     words: &[
         word("none", Radiative::None, "None").doc("No radiation."),
-        word("tauber_sutton", Radiative::TauberSutton, "Tauber and Sutton")
+        word("tauber_sutton", Radiative::TauberSutton, "Tauber–Sutton")
             .doc("4.736e8 r^a ρ^1.22 f(V), with f tabulated from 9 to 16 km/s and none below; J. Spacecraft 28 (1991), for 10 to 16 km/s, 0.3 to 3 m \
                   of nose radius and 6.66e-5 to 6.31e-4 kg/m³."),
     ],
@@ -63,17 +63,17 @@ pub(super) fn heating(object: &mut Object) -> Option<Heating> {
     );
     let default = CoreHeating::default();
     let convective = object
-        .field("convective", "Convective")
+        .field("convective", "Convective heat flux")
         .doc("The flux by convection: a correlation for air by its name, or that of Sutton and Graves with the constant of another gas.")
         .default(CONVECTIVE.of((default.convective, true)))
         .word_or(&CONVECTIVE_FLUX, &CONVECTIVE, sutton_graves);
     let radiative = object
-        .field("radiative", "Radiative")
+        .field("radiative", "Radiative heat flux")
         .doc("The flux by radiation of the shocked air.")
         .default(RADIATIVE.of(default.radiative))
         .word(&RADIATIVE);
     let emissivity = object
-        .field("emissivity", "Emissivity of the wall")
+        .field("emissivity", "Wall emissivity")
         .doc("Of the wall, from 0 to 1.")
         .default(default.emissivity)
         .number(Bound::EMISSIVITY);
@@ -86,7 +86,7 @@ fn sutton_graves(object: &mut Object) -> Option<(Convective, bool)> {
     object.named("SuttonGraves", "Sutton and Graves's correlation in a gas: k √(ρ/r) V³.");
     object.field("type", "Type").doc("The kind of correlation.").constant("sutton_graves");
     let constant = object
-        .field("constant", "Constant")
+        .field("constant", "Sutton–Graves constant")
         .doc("k, kg^0.5/m; 1.7415e-4 for air. NASA TR R-376 has it for other gases.")
         .unit("√kg/m")
         .number(Bound::POSITIVE);

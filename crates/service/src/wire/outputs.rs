@@ -84,11 +84,11 @@ const MOMENTS: Words<Moment> = Words {
     name: "Moment",
     doc: "A moment of the flight.",
     words: &[
-        word("end", Moment::End, "The end").doc("The end of the flight, after what happens then."),
-        word("start", Moment::Start, "The start").doc("The start, before what happens then."),
-        word("peak", Moment::Peak, "The peak")
+        word("end", Moment::End, "End").doc("The end of the flight, after what happens then."),
+        word("start", Moment::Start, "Start").doc("The start, before what happens then."),
+        word("peak", Moment::Peak, "Maximum")
             .doc("Where the quantity is greatest over the flight, located between rows."),
-        word("lowest", Moment::Lowest, "The lowest").doc("Where the quantity is least over the flight."),
+        word("lowest", Moment::Lowest, "Minimum").doc("Where the quantity is least over the flight."),
     ],
 };
 
@@ -117,7 +117,7 @@ fn quantity(object: &mut Object) -> Option<FlightOutput> {
     let columns: Vec<_> = COLUMNS.iter().filter(|column| column.is_number()).collect();
     let names: Vec<_> = columns.iter().map(|column| column.name).collect();
     let column = object.field("quantity", "Quantity").doc("A column of the trajectory.").name(&names);
-    let at = object.field("at", "At").doc("When.").default("end").word_or(&AT, &MOMENTS, moment);
+    let at = object.field("at", "Evaluated at").doc("When.").default("end").word_or(&AT, &MOMENTS, moment);
     Some(FlightOutput::Quantity { column: columns[column?], at: at? })
 }
 
@@ -151,7 +151,7 @@ fn site(object: &mut Object) -> Option<Site> {
     object.named("Site", "A place on the surface.");
     let longitude = object.field("longitude", "Longitude").doc("East positive.").angle(Bound::TURN);
     let geodetic_latitude = object
-        .field("geodetic_latitude", "Latitude, geodetic")
+        .field("geodetic_latitude", "Geodetic latitude")
         .doc("Of the normal of the planet's shape above the equator.")
         .angle(Bound::QUARTER_TURN);
     Some(Site { longitude: longitude?, geodetic_latitude: geodetic_latitude? })

@@ -26,9 +26,9 @@ pub const MODELS: Words<PlanetModel> = Words {
     doc: "The planets whose numbers are known.",
     words: &[
         word("earth_wgs84", PlanetModel::EarthWgs84, "Earth, WGS 84").doc("WGS 84."),
-        word("earth_jameson_listing", PlanetModel::EarthJamesonListing, "Earth, the thesis’s listing")
+        word("earth_jameson_listing", PlanetModel::EarthJamesonListing, "Earth, thesis listing")
             .doc("The numbers of the thesis's program, which made its results: g₀ = 9.798 m/s²."),
-        word("earth_jameson_text", PlanetModel::EarthJamesonText, "Earth, the thesis’s text")
+        word("earth_jameson_text", PlanetModel::EarthJamesonText, "Earth, thesis text")
             .doc("The numbers of the thesis's text: g₀ = 9.7803253359 m/s²."),
         word("custom", PlanetModel::Custom, "Custom").doc("The four numbers given beside it."),
     ],

@@ -79,7 +79,7 @@ pub const FORMULATIONS: Words<Equations> = Words {
     words: &[
         word("cartesian", Equations::Cartesian, "Cartesian")
             .doc("Planet-fixed position and velocity: no singularities."),
-        word("spherical", Equations::Spherical, "Spherical (the thesis’s)")
+        word("spherical", Equations::Spherical, "Spherical (thesis)")
             .doc("The thesis's: singular at the poles, in vertical flight and at rest."),
     ],
 };
@@ -164,7 +164,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let name = object.field("name", "Name").doc("Given back in the answer.").optional().text();
     let angle_unit = angle_unit(object);
     let echo = object
-        .field("echo", "Repeat the case in the answer")
+        .field("echo", "Echo the case")
         .doc("Whether the answer repeats the request, with every default filled in, as `case`; CSV and maps have no place for it.")
         .default(false)
         .boolean();
@@ -175,7 +175,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .optional()
         .objects([0, MOST_VARIED], dispersion);
     let verify = object
-        .field("verify", "Verify the accuracy")
+        .field("verify", "Accuracy check")
         .doc("Whether the answer says how exact the flight is, for the computing of about two flights. Not with CSV or on a map.")
         .default(false)
         .boolean();
@@ -218,7 +218,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     inertial_conditions(object, "initial_state");
     let stop = object.field("stop", "Stop").doc("When the flight ends.").default(json!({})).object(stop);
     let output = object
-        .field("output", "Rows of downloads")
+        .field("output", "Output rows")
         .doc("Which rows the trajectory has.")
         .default(json!({"samples_per_step": 4}))
         .object(output);
@@ -254,7 +254,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
 /// The unit of the angles that are read after it.
 pub(super) fn angle_unit(object: &mut Object) -> Option<AngleUnit> {
     let unit = object
-        .field("angle_unit", "Angles in the JSON")
+        .field("angle_unit", "Angle unit in JSON")
         .doc("The unit of every angle in the request and in the answer. Without it, an angle other than 0 comes with the warning \
               `angle_unit_assumed`.")
         .default("rad")
@@ -265,7 +265,7 @@ pub(super) fn angle_unit(object: &mut Object) -> Option<AngleUnit> {
 
 /// The instant t = 0, which may be left out.
 pub(super) fn epoch(object: &mut Object, doc: &'static str) -> Option<Epoch> {
-    object.field("epoch", "Epoch of t = 0, UTC").doc(doc).optional().value(epoch::epoch_schema, Epoch::read)
+    object.field("epoch", "Epoch (UTC at t = 0)").doc(doc).optional().value(epoch::epoch_schema, Epoch::read)
 }
 
 /// The end of the flight, and its further conditions.
@@ -278,7 +278,7 @@ fn stop(object: &mut Object) -> Option<(Stop, Vec<Condition>)> {
         .unit("m")
         .default(default.altitude)
         .number(Bound::DISTANCE);
-    let time = object.field("time", "Time").doc("s.").unit("s").default(default.time).number(Bound::STOP_TIME);
+    let time = object.field("time", "Time limit").doc("s.").unit("s").default(default.time).number(Bound::STOP_TIME);
     let ceiling = object
         .field("ceiling", "Ceiling")
         .doc("The altitude along the radius vector whose upward crossing ends the flight, m; above `altitude`.")
@@ -307,12 +307,12 @@ fn output(object: &mut Object) -> Option<Output> {
         object.fill("samples_per_step", json!(4));
     }
     let per_step = object
-        .field("samples_per_step", "Rows a step")
+        .field("samples_per_step", "Rows per step")
         .doc("Rows a step of the integration, the last at its end: many where the motion is fast.")
         .optional()
         .whole_number([1, usize::MAX]);
     let interval = object
-        .field("interval", "Seconds between rows")
+        .field("interval", "Row interval")
         .doc("Seconds between rows.")
         .unit("s")
         .optional()
@@ -323,13 +323,13 @@ fn output(object: &mut Object) -> Option<Output> {
         .optional()
         .whole_number([2, usize::MAX]);
     let times = object
-        .field("times", "At the instants")
+        .field("times", "Row times")
         .doc("Instants, ascending, s; those after the end are dropped.")
         .unit("s")
         .optional()
         .ascending()
         .numbers(Bound::NON_NEGATIVE, [0, usize::MAX]);
-    object.field("trajectory", "None").doc("`false`: no trajectory in the answer.").optional().value(
+    object.field("trajectory", "No trajectory").doc("`false`: no trajectory in the answer.").optional().value(
         || json!({"type": "boolean", "const": false}),
         |value| match value {
             Value::Bool(false) => Ok(()),

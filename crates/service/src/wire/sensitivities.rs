@@ -43,7 +43,7 @@ const MOST_OUTPUTS: usize = 64;
 /// The field `sensitivities` of a request.
 pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
     object
-        .field("sensitivities", "Sensitivities of the end")
+        .field("sensitivities", "Sensitivity of the landing point")
         .doc(
             "Whether the answer has derivatives of the flight, and which: `true`, or of outputs (`of`) by numbers of the case (`to`). Not with CSV \
              or on a map.",
@@ -54,9 +54,9 @@ pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
 
 fn matrix(object: &mut Object) -> Option<RequestedSensitivities> {
     object.named("SensitivityMatrix", "The derivatives of outputs by numbers of the case.");
-    let of = object.field("of", "Of").doc("The outputs.").objects([1, MOST_OUTPUTS], output);
+    let of = object.field("of", "Outputs").doc("The outputs.").objects([1, MOST_OUTPUTS], output);
     let to = object
-        .field("to", "To")
+        .field("to", "Inputs")
         .doc(
             "JSON pointers of numbers in this request, as `echo` shows it; of a list of numbers each is meant. Together at most 64 \
              numbers.",

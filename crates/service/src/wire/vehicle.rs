@@ -40,10 +40,10 @@ pub(super) fn aerodynamics(object: &mut Object) -> Option<Aerodynamics> {
         &[
             variant("constant", "Constant coefficients", "The same at every speed.", &constant),
             variant("ballistic", "Ballistic coefficient", "The same at every speed, by ratios.", &ballistic),
-            variant("mach_table", "By Mach number", "By Mach number.", &mach_table),
+            variant("mach_table", "Mach number table", "By Mach number.", &mach_table),
             variant(
                 "alpha_mach_table",
-                "By angle of attack and Mach number",
+                "Angle of attack and Mach table",
                 "By angle of attack and Mach number.",
                 &alpha_mach_table,
             ),
@@ -86,7 +86,7 @@ fn ballistic(object: &mut Object) -> Option<Aerodynamics> {
         .unit("kg/m²")
         .number(Bound::POSITIVE);
     let lift_to_drag = object
-        .field("lift_to_drag", "Lift over drag")
+        .field("lift_to_drag", "Lift-to-drag ratio")
         .doc("Lift over drag; negative lift points down at zero bank.")
         .default(0.0)
         .number(Bound::FINITE);

@@ -38,8 +38,8 @@ pub(super) fn wind(object: &mut Object) -> Option<Wind> {
     object.variants(
         "The kind of wind.",
         &[
-            variant("constant", "The same everywhere", "The same everywhere.", &constant),
-            variant("table", "By altitude", "By altitude.", &table),
+            variant("constant", "Uniform", "The same everywhere.", &constant),
+            variant("table", "Altitude table", "By altitude.", &table),
         ],
     )
 }
@@ -53,9 +53,9 @@ fn constant(object: &mut Object) -> Option<Wind> {
         WAYS,
         |object| {
             let east =
-                object.field("east", "Towards the east").doc("Towards the east, m/s.").unit("m/s").number(Bound::WIND);
+                object.field("east", "Eastward").doc("Towards the east, m/s.").unit("m/s").number(Bound::WIND);
             let north = object
-                .field("north", "Towards the north")
+                .field("north", "Northward")
                 .doc("Towards the north, m/s.")
                 .unit("m/s")
                 .number(Bound::WIND);
@@ -68,7 +68,7 @@ fn constant(object: &mut Object) -> Option<Wind> {
                 .unit("m/s")
                 .number(Bound::WIND_SPEED);
             let from = object
-                .field("from", "From, clockwise from north")
+                .field("from", "Direction (from)")
                 .doc("The compass direction from which the wind blows, clockwise from north: 0 is a north wind, 270° a west wind.")
                 .angle(Bound::TURN);
             Some(components(speed?, from?))
@@ -92,12 +92,12 @@ fn table(object: &mut Object) -> Option<Wind> {
         WAYS,
         |object| {
             let east = object
-                .field("east", "East")
+                .field("east", "Eastward")
                 .doc("Towards the east, m/s.")
                 .unit("m/s")
                 .numbers(Bound::WIND, [1, MOST_ENTRIES]);
             let north = object
-                .field("north", "North")
+                .field("north", "Northward")
                 .doc("Towards the north, m/s.")
                 .unit("m/s")
                 .numbers(Bound::WIND, [1, MOST_ENTRIES]);
@@ -111,7 +111,7 @@ fn table(object: &mut Object) -> Option<Wind> {
                 .unit("m/s")
                 .numbers(Bound::WIND_SPEED, [1, MOST_ENTRIES]);
             let from = object
-                .field("from", "From")
+                .field("from", "Direction (from)")
                 .doc("The compass directions from which the wind blows, clockwise from north, within ±2π (±360°).")
                 .angles(Bound::TURN, MOST_ENTRIES);
             let sound = object.equally_long("altitude", &["speed", "from"]);

@@ -18,7 +18,7 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
         &[
             variant(
                 "planet_relative",
-                "Planet-relative (the thesis’s)",
+                "Planet-relative (thesis)",
                 "Speed and angles against the geocentric horizontal.",
                 &|object| planet_relative(object, has_epoch),
             ),
@@ -46,7 +46,7 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
     let height = height(object);
     let longitude = object.field("longitude", "Longitude").doc("East positive, within ±2π (±360°).").angle(Bound::TURN);
     let geocentric_latitude = object
-        .field("geocentric_latitude", "Latitude, geocentric")
+        .field("geocentric_latitude", "Geocentric latitude")
         .doc("Within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let speed =
@@ -58,12 +58,12 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
         )
         .angle(Bound::QUARTER_TURN);
     let heading = object
-        .field("heading", "Heading, from east to north")
+        .field("heading", "Heading, from east")
         .doc("From east (0) towards north (π/2), within ±2π (±360°). Exactly one of `heading` and `azimuth`.")
         .optional()
         .angle(Bound::TURN);
     let azimuth = object
-        .field("azimuth", "Azimuth, clockwise from north")
+        .field("azimuth", "Azimuth, from north")
         .doc("Clockwise from north, within ±2π (±360°). Exactly one of `heading` and `azimuth`.")
         .optional()
         .angle(Bound::TURN);
@@ -83,13 +83,13 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
 fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
     object.named("Geodetic", "Place and motion relative to the rotating planet, against the geodetic horizontal.");
     let geodetic_altitude = object
-        .field("geodetic_altitude", "Altitude, geodetic")
+        .field("geodetic_altitude", "Geodetic altitude")
         .doc("Height above the planet's shape along its normal, m.")
         .unit("m")
         .number(Bound::DISTANCE);
     let longitude = object.field("longitude", "Longitude").doc("East positive, within ±2π (±360°).").angle(Bound::TURN);
     let geodetic_latitude =
-        object.field("geodetic_latitude", "Latitude, geodetic").doc("Within ±π/2 (±90°).").angle(Bound::QUARTER_TURN);
+        object.field("geodetic_latitude", "Geodetic latitude").doc("Within ±π/2 (±90°).").angle(Bound::QUARTER_TURN);
     let speed =
         object.field("speed", "Speed").doc("Relative to the rotating planet, m/s.").unit("m/s").number(Bound::SPEED);
     let flight_path_angle = object
@@ -97,7 +97,7 @@ fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
         .doc("Of the relative velocity above the geodetic horizontal, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let azimuth = object
-        .field("azimuth", "Azimuth, clockwise from north")
+        .field("azimuth", "Azimuth, from north")
         .doc("Clockwise from north, within ±2π (±360°); answers give [0, 2π).")
         .angle(Bound::TURN);
     let sidereal = sidereal(object, has_epoch);
@@ -215,7 +215,7 @@ fn inertial_flight_path(object: &mut Object, has_epoch: bool) -> Option<State> {
         .doc("Planet-fixed, east positive, within ±2π (±360°).")
         .angle(Bound::TURN);
     let geocentric_latitude = object
-        .field("geocentric_latitude", "Latitude, geocentric")
+        .field("geocentric_latitude", "Geocentric latitude")
         .doc("Within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let inertial_speed = object
@@ -289,7 +289,7 @@ pub const FRAMES: Words<Frame> = Words {
     name: "Frame",
     doc: "An inertial frame.",
     words: &[
-        word("date", Frame::Date, "of date")
+        word("date", Frame::Date, "Equator of date")
             .doc("The planet's equator, from which the planet is turned by the sidereal time; with an epoch on the Earth, the equator and the \
                   celestial intermediate origin of date."),
         word("teme", Frame::Teme, "TEME (SGP4)")
