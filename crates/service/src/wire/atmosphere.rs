@@ -49,7 +49,7 @@ pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
         "The kind of atmosphere.",
         &[
             variant("exponential", "Exponential", "One scale height.", &exponential),
-            variant("us76", "U.S. Standard Atmosphere 1976", "The U.S. Standard Atmosphere, 1976.", &us76),
+            variant("us76", "U.S. Standard 1976", "The U.S. Standard Atmosphere, 1976.", &us76),
             variant(
                 "layered_exponential",
                 "Layered exponential",

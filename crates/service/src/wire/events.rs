@@ -177,8 +177,11 @@ fn crossing(object: &mut Object) -> Option<Condition> {
 }
 
 fn after(object: &mut Object) -> Option<Condition> {
-    let event =
-        object.field("event", "After event").doc("The name of another event, which happens before.").optional().text();
+    let event = object
+        .field("event", "Or after event")
+        .doc("The name of another event, which happens before.")
+        .optional()
+        .text();
     let delay = object
         .field("delay", "Delay after event")
         .doc("Seconds after that event.")

@@ -41,12 +41,7 @@ pub(super) fn aerodynamics(object: &mut Object) -> Option<Aerodynamics> {
             variant("constant", "Constant coefficients", "The same at every speed.", &constant),
             variant("ballistic", "Ballistic coefficient", "The same at every speed, by ratios.", &ballistic),
             variant("mach_table", "Mach number table", "By Mach number.", &mach_table),
-            variant(
-                "alpha_mach_table",
-                "Angle of attack and Mach table",
-                "By angle of attack and Mach number.",
-                &alpha_mach_table,
-            ),
+            variant("alpha_mach_table", "Alpha–Mach table", "By angle of attack and Mach number.", &alpha_mach_table),
         ],
     )
 }

@@ -87,7 +87,7 @@ export function Computing() {
   const { solver, models, verification, version } = answer;
   return (
     <p class="quiet">
-      {modelsInWords(models)}; {solver.steps} steps, {solver.evaluations} function evaluations, {number(solver.elapsed * 1e6, 3)} µs.
+      {modelsInWords(models)}; {solver.steps} steps, {solver.evaluations} function evaluations, {number(solver.elapsed * 1e3, 3)} ms.
       reentry {version}.
       {verification && (
         <>

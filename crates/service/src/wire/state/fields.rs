@@ -18,19 +18,19 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
         &[
             variant(
                 "planet_relative",
-                "Planet-relative (thesis)",
+                "Planet-relative",
                 "Speed and angles against the geocentric horizontal.",
                 &|object| planet_relative(object, has_epoch),
             ),
             variant("geodetic", "Geodetic", "Speed and angles against the geodetic horizontal.", &|object| {
                 geodetic(object, has_epoch)
             }),
-            variant("ecef", "Planet-fixed vectors (ECEF)", "Planet-fixed vectors.", &|object| ecef(object, has_epoch)),
-            variant("eci", "Inertial vectors (ECI)", "Inertial vectors.", &|object| eci(object, has_epoch)),
+            variant("ecef", "ECEF vectors", "Planet-fixed vectors.", &|object| ecef(object, has_epoch)),
+            variant("eci", "ECI vectors", "Inertial vectors.", &|object| eci(object, has_epoch)),
             variant("orbital_elements", "Orbital elements", "An orbit.", &|object| orbital_elements(object, has_epoch)),
             variant(
                 "inertial_flight_path",
-                "Inertial entry interface",
+                "Inertial flight path",
                 "Speed and angles of the inertial velocity against the geocentric horizontal.",
                 &|object| inertial_flight_path(object, has_epoch),
             ),

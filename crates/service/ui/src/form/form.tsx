@@ -4,6 +4,7 @@ import type { ComponentChildren } from 'preact';
 import { useState } from 'preact/hooks';
 import type { Case, State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
+import { capital } from '../figures';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
 import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
@@ -739,7 +740,7 @@ function List({ field, path, isBare }: ListProps) {
         <div class="list-item" key={`${items.length}-${index}`}>
           <div class="list-head">
             <span>
-              {field.one} {index + 1}
+              {capital(field.one)} {index + 1}
             </span>
             <button
               type="button"
