@@ -49,6 +49,7 @@ export function Compare() {
         </button>
       </div>
       <Differences />
+      <p class="quiet">Small numbers: difference from the current flight.</p>
     </section>
   );
 }

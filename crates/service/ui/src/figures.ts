@@ -117,6 +117,11 @@ const GRAVITIES: Record<Schemas['Gravity']['type'], string> = {
   zonal: 'zonal gravity',
 };
 
+/** A text with the names of planets in words. */
+export function withPlanetsInWords(text: string): string {
+  return text.replaceAll(/earth_\w+/g, (name) => PLANETS[name as Schemas['PlanetModel']] ?? name);
+}
+
 /** The models of a flight: planet, atmosphere, gravity. */
 export function modelsInWords({ planet, shape, atmosphere, gravity }: Answer['models']): string {
   const air = ATMOSPHERES[atmosphere as keyof typeof ATMOSPHERES] ?? atmosphere;

@@ -1,6 +1,6 @@
 import { useEffect, useState } from 'preact/hooks';
 import { address, type Schemas } from './api';
-import { number } from './figures';
+import { number, withPlanetsInWords } from './figures';
 import { Scroll } from './scroll';
 
 /** The reference cases that are built into the program, flown now. */
@@ -56,7 +56,7 @@ function Checks({ validation }: { validation: Schemas['Validation'] }) {
               <tr key={`${check.case}${check.quantity}`} title={`${check.source}. ${check.note}`}>
                 <th scope="row">{check.case}</th>
                 <td>
-                  {check.quantity}
+                  {withPlanetsInWords(check.quantity)}
                   {check.unit && `, ${check.unit}`}
                 </td>
                 {[check.expected, check.got, check.difference, check.allowed].map((value, index) => (
