@@ -16,6 +16,7 @@ COPY Cargo.toml Cargo.lock ./
 COPY crates crates
 COPY tests tests
 COPY openapi/examples openapi/examples
+COPY openapi/answers openapi/answers
 COPY --from=page /src/crates/service/ui/dist crates/service/ui/dist
 # What is downloaded and compiled stays on the builder, so that a change compiles the changed crates alone. The folders are not
 # part of the image: the program is copied out of them.

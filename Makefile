@@ -72,7 +72,7 @@ openapi: ## Write openapi/openapi.json anew
 	cargo run --quiet --locked --bin reentry -- openapi > $(TARGET)/openapi.json
 	cmp --quiet $(TARGET)/openapi.json openapi/openapi.json || mv $(TARGET)/openapi.json openapi/openapi.json
 
-validation: build ## Print how the results compare with published ones, as the README has it
+validation: build ## Print how the results compare with published ones, as the guide has it
 	$(TARGET)/release/reentry validate --format markdown
 
 air: ## Print what standard air makes of the thesis's cases

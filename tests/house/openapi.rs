@@ -420,7 +420,8 @@ async fn every_answer_has_the_headers_of_the_document() {
     ] {
         let method = if path == "/simulate" { "post" } else { "get" };
         let response = &document["paths"][path][method]["responses"][answer.status.as_str()];
-        let headers = response["headers"].as_object().unwrap();
+        let shared = response["$ref"].as_str().map(|target| document.pointer(&target[1..]).unwrap());
+        let headers = shared.unwrap_or(response)["headers"].as_object().unwrap();
         assert!(headers.contains_key("x-request-id"), "{path} {}", answer.status);
         for name in headers.keys() {
             assert!(answer.headers.contains_key(name), "{path} {}: {name}", answer.status);
@@ -633,6 +634,68 @@ async fn problem_documents_are_valid() {
     ] {
         assert!(answer.status.is_client_error());
         is_valid(&schema, &answer.json(), "a problem");
+    }
+}
+
+/// Readers of the document see what they would get: the answers in it are those of the service.
+#[tokio::test]
+async fn the_answers_that_the_document_shows_are_those_of_the_service() {
+    let service = Service::new();
+    let document = document();
+    let example = |path: &str, name: &str| {
+        document["paths"][path]["post"]["requestBody"]["content"]["application/json"]["examples"][name]["value"].clone()
+    };
+    let shown = |pointer: &str| document.pointer(pointer).unwrap_or_else(|| panic!("{pointer}")).clone();
+    let target = example("/simulate", "target_1");
+    let wrong = with(&target, "/vehicle/mass", -5);
+    let misspelt = with(&without(&wrong, "/vehicle/reference_area"), "/vehicle/refrence_area", 1);
+    let answer = |path: &str| shown(&format!("/paths/~1{path}/post/responses/200/content/application~1json/example"));
+    for (path, request, expected) in [
+        ("simulate", with(&target, "/output", json!({"count": 3})), answer("simulate")),
+        ("convert", example("/convert", "impulse"), answer("convert")),
+        (
+            "analytic",
+            with(&example("/analytic", "steep_ballistic"), "/output", json!({"count": 3})),
+            answer("analytic"),
+        ),
+        ("simulate", misspelt, shown("/components/responses/InvalidCase/content/application~1problem+json/example")),
+    ] {
+        let got = service.post(&format!("/{path}"), &request).await.json();
+        assert_eq!(differences(&expected, &got, ""), [""; 0], "openapi/answers is out of date: {got:#}");
+    }
+    let batch = json!([with(&target, "/output", json!({"trajectory": false})), wrong]);
+    let got = service.post("/simulate/batch", &batch).await;
+    let lines = shown("/paths/~1simulate~1batch/post/responses/200/content/application~1x-ndjson/example");
+    let got: Vec<_> = std::str::from_utf8(&got.body).unwrap().lines().collect();
+    let expected: Vec<_> = lines.as_str().unwrap().lines().collect();
+    assert_eq!(got.len(), expected.len());
+    for (got, expected) in got.iter().zip(expected) {
+        let [tree, expected] = [got, expected].map(|line| serde_json::from_str::<Value>(line).unwrap());
+        assert_eq!(differences(&expected, &tree, ""), [""; 0], "openapi/answers/batch.ndjson is out of date: {got}");
+    }
+}
+
+/// Where an answer is not the expected one: numbers to a millionth, as machines round in different ways, and not how long it took.
+fn differences(expected: &Value, got: &Value, at: &str) -> Vec<String> {
+    match (expected, got) {
+        (Value::Object(expected), Value::Object(got)) => {
+            let names: BTreeSet<_> = expected.keys().chain(got.keys()).filter(|name| *name != "elapsed").collect();
+            names
+                .into_iter()
+                .flat_map(|name| differences(&expected[name], &got[name], &format!("{at}/{name}")))
+                .collect()
+        }
+        (Value::Array(expected), Value::Array(got)) if expected.len() == got.len() => {
+            let elements = expected.iter().zip(got).enumerate();
+            elements.flat_map(|(index, (expected, got))| differences(expected, got, &format!("{at}/{index}"))).collect()
+        }
+        (Value::Number(expected), Value::Number(got)) => {
+            let [expected, got] = [expected, got].map(|number| number.as_f64().unwrap());
+            let is_near = (expected - got).abs() <= 1e-6 * expected.abs().max(1.0);
+            if is_near { Vec::new() } else { vec![format!("{at}: {got} for {expected}")] }
+        }
+        (expected, got) if expected == got => Vec::new(),
+        (expected, got) => vec![format!("{at}: {got} for {expected}")],
     }
 }
 

@@ -249,7 +249,7 @@ fn every_file_of_tests_is_in_a_program() {
 #[test]
 fn every_path_that_the_documents_name_exists() {
     let mut named = 0;
-    for document in ["README.md", "CONTRIBUTING.md"] {
+    for document in ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "BENCHMARKS.md"] {
         let text = fs::read_to_string(root().join(document)).unwrap();
         for code in text.split('`').skip(1).step_by(2) {
             let path = code.trim_end_matches('/');

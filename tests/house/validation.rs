@@ -1,4 +1,4 @@
-//! The reference cases that are built into the program: `reentry validate`, `GET /validation`, and the README.
+//! The reference cases that are built into the program: `reentry validate`, `GET /validation`, and the guide.
 
 use std::fs;
 use std::path::Path;
@@ -81,9 +81,12 @@ fn a_validation_for_which_nobody_waits_ends() {
 }
 
 #[test]
-fn the_readme_has_the_validation() {
+fn the_guide_has_the_validation() {
     let markdown = validation().to_markdown();
-    assert!(include_str!("../../README.md").contains(&markdown), "out of date: run `make validation`\n{markdown}");
+    assert!(
+        include_str!("../../crates/service/guide/validation.md").contains(&markdown),
+        "out of date: run `make validation`\n{markdown}"
+    );
 }
 
 #[test]

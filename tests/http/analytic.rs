@@ -132,7 +132,10 @@ async fn the_end_is_located_between_the_rows_and_said_why() {
 async fn the_readme_has_the_table_that_make_theory_prints() {
     let table = reentry_tests::theory::table().await;
     assert_eq!(table.lines().count(), 7);
-    assert!(include_str!("../../README.md").contains(&table), "the README is out of date: run `make theory`\n{table}");
+    assert!(
+        include_str!("../../crates/service/guide/validation.md").contains(&table),
+        "the guide is out of date: run `make theory`\n{table}"
+    );
 }
 
 #[tokio::test]

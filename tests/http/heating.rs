@@ -77,7 +77,7 @@ async fn without_heating_there_is_no_trace_of_it() {
     assert!(answer["peaks"].get("heat_flux").is_none());
 }
 
-/// Every row is the correlation of its own density and speed relative to the air, as the README prints it, and its wall radiates that.
+/// Every row is the correlation of its own density and speed relative to the air, as the guide prints it, and its wall radiates that.
 #[tokio::test]
 async fn each_row_has_the_flux_of_the_correlation_that_was_asked_for() {
     type Flux = fn(f64, f64) -> f64;

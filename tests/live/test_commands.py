@@ -353,10 +353,10 @@ def test_the_validation_is_that_of_the_service_and_fits_its_schema(service):
     assert all(check["passed"] == (True if check["kind"] == "reference" else None) for check in validation["checks"])
 
 
-def test_the_readme_has_the_validation_as_it_is_shipped():
+def test_the_guide_has_the_validation_as_it_is_shipped():
     result = run("validate", "--format", "markdown")
     assert result.returncode == 0
-    assert result.stdout in (Path(__file__).parents[2] / "README.md").read_text()
+    assert result.stdout in (Path(__file__).parents[2] / "crates/service/guide/validation.md").read_text()
 
 
 def test_bash_completes_the_commands(file):

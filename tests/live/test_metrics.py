@@ -6,7 +6,7 @@ from pathlib import Path
 from conftest import ORBIT
 from prometheus_client.openmetrics.parser import text_string_to_metric_families
 
-README = Path(__file__).parents[2] / "README.md"
+OPERATIONS = Path(__file__).parents[2] / "crates/service/guide/operations.md"
 QUICK = {**ORBIT, "stop": {"time": 1}}
 
 
@@ -38,7 +38,7 @@ def test_what_the_readme_asks_for_is_there(start):
     service.simulate(QUICK)
     service.simulate({})
     names = set(samples(service.get("/metrics")))
-    asked = set(re.findall(r"\breentry_[a-z_]+\b", README.read_text()))
+    asked = set(re.findall(r"\breentry_[a-z_]+\b", OPERATIONS.read_text()))
     # Appears with the first of its kind.
     missing = asked - names - {"reentry_cancellations_total", "reentry_client"}
     assert not missing

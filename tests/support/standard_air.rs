@@ -1,4 +1,4 @@
-//! The table of the README that flies the thesis's cases through the U.S. Standard Atmosphere, 1976, over HTTP.
+//! The table of the guide that flies the thesis's cases through the U.S. Standard Atmosphere, 1976, over HTTP.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! The table of the README that sets the theories beside the simulation, over HTTP.
+//! The table of the guide that sets the theories beside the simulation, over HTTP.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! Prints the table of the README that flies the thesis's cases through standard air.
+//! Prints the table of the guide that flies the thesis's cases through standard air.
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() {

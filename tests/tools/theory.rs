@@ -1,4 +1,4 @@
-//! Prints the table of the README that sets the theories beside the simulation.
+//! Prints the table of the guide that sets the theories beside the simulation.
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() {

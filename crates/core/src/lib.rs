@@ -67,7 +67,7 @@
 //! # Reference
 //!
 //! R. E. Jameson Jr, Development and Validation of Reentry Simulation Using MATLAB, thesis AFIT/GSS/ENY/06-M08, Air Force
-//! Institute of Technology, March 2006: "Jameson 2006" in these pages, and its errata in the README.
+//! Institute of Technology, March 2006: "Jameson 2006" in these pages, and its errata in the guide of the service.
 
 pub mod scenario;
 pub mod sensitivity;

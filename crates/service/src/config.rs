@@ -278,15 +278,15 @@ mod tests {
     use super::Config;
 
     #[test]
-    fn the_readme_has_every_setting_with_its_variable_and_its_default() {
-        let readme = include_str!("../../../README.md");
+    fn the_guide_has_every_setting_with_its_variable_and_its_default() {
+        let chapter = include_str!("../guide/operations.md");
         let command = Config::augment_args(Command::new("reentry"));
         for setting in command.get_arguments().filter(|setting| setting.get_id() != "help") {
             let name = setting.get_long().unwrap();
             let variable = setting.get_env().unwrap().to_str().unwrap();
             let default = setting.get_default_values().first().map_or("none", |value| value.to_str().unwrap());
             let line = format!("| `--{name}` | `{variable}` | {default} | ");
-            assert!(readme.contains(&line), "the README does not have {line}");
+            assert!(chapter.contains(&line), "guide/operations.md does not have {line}");
         }
     }
 

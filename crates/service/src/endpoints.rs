@@ -9,6 +9,7 @@ pub mod analytic;
 pub mod batch;
 pub mod convert;
 pub mod docs;
+pub mod guide;
 pub mod health;
 pub mod metrics;
 pub mod page;

@@ -86,6 +86,13 @@ impl Format {
     }
 }
 
+/// Whether a client asks for HTML by name, and for JSON less: as browsers do, and tools do not.
+pub fn prefers_html(headers: &HeaderMap) -> bool {
+    let accept: Vec<_> = headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok()).collect();
+    let accept = accept.join(",");
+    accept.contains("text/html") && quality(&accept, "text/html") >= quality(&accept, "application/json")
+}
+
 /// The offered format of the greatest quality in `Accept` (RFC 9110, section 12.5.1).
 fn accepted(headers: &HeaderMap, offered: &[Format]) -> Option<Format> {
     let accept: Vec<_> = headers.get_all(header::ACCEPT).iter().map(|value| value.to_str().unwrap_or("")).collect();

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use utoipa::OpenApi;
 
-use crate::error::Problem;
+use crate::error::{ApiError, Problem};
 use crate::wire::batch::MOST_CASES;
 use crate::wire::request_schemas;
 
@@ -12,17 +12,52 @@ use crate::wire::request_schemas;
 #[openapi(
     info(
         title = "reentry",
-        description = "Flies vehicles back through the atmosphere. SI units; angles in `angle_unit`; an unknown field is an error. \
-                       A field's `x-unit` is its unit, `angle` for the one of `angle_unit`.",
+        description = DESCRIPTION,
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0"),
     ),
     tags(
         (name = "reentry", description = "Flights and conversions."),
-        (name = "health", description = "For those who watch the service."),
+        (name = "health", description = "Health and metrics."),
     ),
     components(schemas(Problem)),
 )]
 pub struct Document;
+
+/// What a reader of the document needs first.
+const DESCRIPTION: &str = "\
+Simulates atmospheric entry: trajectories, landing points, loads and heating. [Open the page](../) or [read the guide](../guide/).
+
+**Conventions.** SI units. Angles are in `angle_unit`, radians by default. `heading` counts from east towards north, `azimuth` from north
+towards east. `flight_path_angle` is negative on the way down. `altitude` is along the radius, `geodetic_altitude` along the normal of the
+ellipsoid. `speed` is relative to the rotating planet. Times are seconds from the start of the flight. An unknown field is an error. In the
+schemas `x-unit` is the unit of a field, `angle` for the one of `angle_unit`.
+
+**The smallest case** has a vehicle, an initial state and an atmosphere; everything else has a default, which `\"echo\": true` shows:
+
+```json
+{
+  \"angle_unit\": \"deg\",
+  \"atmosphere\": {\"type\": \"us76\"},
+  \"vehicle\": {\"mass\": 5500, \"reference_area\": 12, \"aerodynamics\": {\"type\": \"constant\", \"drag_coefficient\": 1.3}},
+  \"initial_state\": {\"type\": \"geodetic\", \"geodetic_altitude\": 120000, \"longitude\": -40, \"geodetic_latitude\": 10,
+    \"speed\": 7500, \"flight_path_angle\": -2, \"azimuth\": 60}
+}
+```
+
+**Errors** are problem documents (RFC 9457). All faults of a request come at once, each with the JSON pointer of its field. The path in
+`type` answers a page that says what to do, as does `/warnings/CODE` for the warnings of an answer.";
+
+/// The paths in the order in which a reader needs them.
+const ORDER: [&str; 8] = [
+    "/simulate",
+    "/simulate/batch",
+    "/convert",
+    "/analytic",
+    "/validation",
+    "/health/live",
+    "/health/ready",
+    "/metrics",
+];
 
 /// How a body may be sent.
 const BODY: &str = "With `Content-Encoding: gzip` or `zstd` it may come compressed; the greatest length of a body then is that of its text.";
@@ -84,18 +119,60 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
         cases["minItems"] = json!(1);
         cases["maxItems"] = json!(MOST_CASES);
     }
+    sort_paths(&mut document);
     document["components"]["headers"] = headers();
+    document["components"]["responses"] = problems();
     name_constants(&mut document);
     document
 }
 
 fn add_failures(operation: &mut Value, may_fail: impl Fn(&str) -> bool) {
     for (status, description) in FAILURES.into_iter().filter(|(status, _)| may_fail(status)) {
-        operation["responses"][status] = json!({
-            "description": description,
-            "content": {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}},
-        });
+        let shared = match status {
+            "405" => "MethodNotAllowed",
+            "422" => "InvalidCase",
+            "429" | "503" => "TryAgain",
+            _ => "Problem",
+        };
+        operation["responses"][status] =
+            json!({"$ref": format!("#/components/responses/{shared}"), "description": description});
     }
+}
+
+/// The responses that all endpoints share: problem documents.
+fn problems() -> Value {
+    let problem = |description, header: Option<(&str, &str)>, example: Value| {
+        let mut headers = json!({"x-request-id": {"$ref": "#/components/headers/RequestId"}});
+        if let Some((name, header)) = header {
+            headers[name] = json!({"$ref": format!("#/components/headers/{header}")});
+        }
+        let content = json!({"schema": {"$ref": "#/components/schemas/Problem"}, "example": example});
+        json!({"description": description, "headers": headers, "content": {"application/problem+json": content}})
+    };
+    let short = |error: &ApiError| json!(error.problem());
+    json!({
+        "Problem": problem("A problem document.", None, short(&ApiError::DeadlineExceeded { seconds: 10.0 })),
+        "MethodNotAllowed":
+            problem("Method not allowed.", Some(("allow", "Allow")), short(&ApiError::MethodNotAllowed("/simulate".to_owned()))),
+        "TryAgain": problem("Try again later.", Some(("retry-after", "RetryAfter")), short(&ApiError::Busy)),
+        "InvalidCase": problem("Not a valid case.", None, parsed(include_str!("../../../openapi/answers/invalid.json"))),
+    })
+}
+
+/// Puts the paths into their order.
+fn sort_paths(document: &mut Value) {
+    let Some(paths) = document["paths"].as_object_mut() else { return };
+    let mut unsorted = std::mem::take(paths);
+    for path in ORDER {
+        if let Some(item) = unsorted.remove(path) {
+            paths.insert(path.to_owned(), item);
+        }
+    }
+    paths.extend(unsorted);
+}
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_default()
 }
 
 /// The headers that answers have.
@@ -114,17 +191,10 @@ fn headers() -> Value {
 fn add_headers(paths: &mut Map<String, Value>) {
     let operations = paths.values_mut().filter_map(Value::as_object_mut).flat_map(Map::values_mut);
     for responses in operations.filter_map(|operation| operation["responses"].as_object_mut()) {
-        for (status, response) in responses {
-            let mut headers = vec![("x-request-id", "RequestId")];
-            let is_problem = response["content"].get("application/problem+json").is_some();
-            match status.as_str() {
-                "405" => headers.push(("allow", "Allow")),
-                // Not that of `/health/ready`: who watches comes back anyway.
-                "429" | "503" if is_problem => headers.push(("retry-after", "RetryAfter")),
-                _ => {}
-            }
-            for (name, header) in headers {
-                response["headers"][name] = json!({"$ref": format!("#/components/headers/{header}")});
+        for response in responses.values_mut() {
+            // Shared responses have theirs.
+            if response.get("$ref").is_none() {
+                response["headers"]["x-request-id"] = json!({"$ref": "#/components/headers/RequestId"});
             }
         }
     }
@@ -160,28 +230,27 @@ fn name_constants(value: &mut Value) {
 }
 
 fn add_examples(paths: &mut Map<String, Value>) {
-    let example = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
     let simulate = json!({
         "deorbit": {"summary": "A capsule comes down from orbit: a burn, the heat of entry, parachutes",
-            "value": example(include_str!("../../../openapi/examples/deorbit.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/deorbit.json"))},
         "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
-            "value": example(include_str!("../../../openapi/examples/lifting_capsule.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/lifting_capsule.json"))},
         "sample_return": {"summary": "A sample capsule returns from a comet: from the inertial state at entry, with heating and parachutes",
-            "value": example(include_str!("../../../openapi/examples/sample_return.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/sample_return.json"))},
         "target_1": {"summary": "TARGET reference case 1, of the thesis: steep and fast, from orbital elements",
-            "value": example(include_str!("../../../openapi/examples/target_1.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/target_1.json"))},
         "target_2": {"summary": "TARGET reference case 2, of the thesis: a banked, lifting vehicle",
-            "value": example(include_str!("../../../openapi/examples/target_2.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/target_2.json"))},
         "impulse": {"summary": "IMPULSE reference case, of the thesis: from inertial vectors",
-            "value": example(include_str!("../../../openapi/examples/impulse.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/impulse.json"))},
     });
     let convert = json!({
         "impulse": {"summary": "The initial state of the IMPULSE reference case",
-            "value": example(include_str!("../../../openapi/examples/impulse_state.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/impulse_state.json"))},
     });
     let analytic = json!({
         "steep_ballistic": {"summary": "A small vehicle falls steeply from 400 km: the straight line of the ballistic theory",
-            "value": example(include_str!("../../../openapi/examples/steep_ballistic.json"))},
+            "value": parsed(include_str!("../../../openapi/examples/steep_ballistic.json"))},
     });
     let batch = json!({
         "list": {"summary": "Two cases", "value": [simulate["deorbit"]["value"], simulate["sample_return"]["value"]]},
@@ -191,4 +260,13 @@ fn add_examples(paths: &mut Map<String, Value>) {
     {
         paths[path]["post"]["requestBody"]["content"]["application/json"]["examples"] = examples;
     }
+    for (path, media_type, answer) in [
+        ("/simulate", "application/json", include_str!("../../../openapi/answers/simulate.json")),
+        ("/convert", "application/json", include_str!("../../../openapi/answers/convert.json")),
+        ("/analytic", "application/json", include_str!("../../../openapi/answers/analytic.json")),
+    ] {
+        paths[path]["post"]["responses"]["200"]["content"][media_type]["example"] = parsed(answer);
+    }
+    let batch = &mut paths["/simulate/batch"]["post"]["responses"]["200"]["content"]["application/x-ndjson"];
+    batch["example"] = json!(include_str!("../../../openapi/answers/batch.ndjson"));
 }

@@ -13,7 +13,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::config::Origins;
-use crate::endpoints::{analytic, batch, convert, docs, health, metrics, page, simulate, validation};
+use crate::endpoints::{analytic, batch, convert, docs, guide, health, metrics, page, simulate, validation};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, check_head, limit, observe, protect};
 use crate::openapi::{self, Document};
@@ -52,6 +52,11 @@ pub fn app(state: AppState) -> Router {
         .route("/docs", get(docs::redirect))
         .route("/docs/", get(docs::page))
         .route("/docs/{*name}", get(docs::file))
+        .route("/guide", get(guide::redirect))
+        .route("/guide/", get(guide::contents))
+        .route("/guide/{name}", get(guide::file))
+        .route("/problems/{name}", get(guide::problem))
+        .route("/warnings/{name}", get(guide::warning))
         .route("/", get(page::index))
         .route("/assets/{name}", get(page::asset));
     surrounded(all, state)

@@ -11,10 +11,9 @@ export default defineConfig({
   build: { target: 'es2022', sourcemap: false, modulePreload: { polyfill: false }, assetsInlineLimit: 0 },
   server: {
     proxy: Object.fromEntries(
-      ['/simulate', '/convert', '/analytic', '/validation', '/docs', '/openapi.json', '/health'].map((path) => [
-        path,
-        'http://127.0.0.1:8080',
-      ]),
+      ['/simulate', '/convert', '/analytic', '/validation', '/docs', '/guide', '/problems', '/warnings', '/openapi.json', '/health'].map(
+        (path) => [path, 'http://127.0.0.1:8080'],
+      ),
     ),
   },
   test: { include: ['test/unit/**/*.test.ts'] },

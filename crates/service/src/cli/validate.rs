@@ -24,7 +24,7 @@ enum Format {
     Text,
     /// Every check with all its digits, as GET /validation answers
     Json,
-    /// A line a case, for a README
+    /// A table with a line for each case
     Markdown,
 }
 

@@ -17,9 +17,9 @@ use crate::metrics::Work;
 use crate::reply::reply;
 use crate::state::AppState;
 
-/// The validator of Swagger's own site is left out.
+/// Without Swagger's bar and the validator of its own site.
 static CONFIG: LazyLock<Arc<Config<'static>>> =
-    LazyLock::new(|| Arc::new(Config::from("/openapi.json").validator_url("none")));
+    LazyLock::new(|| Arc::new(Config::from("/openapi.json").validator_url("none").use_base_layout()));
 
 /// The page is at `/docs/`, beside which its files lie.
 pub async fn redirect() -> Redirect {

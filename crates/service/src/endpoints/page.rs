@@ -6,7 +6,7 @@ use axum::response::{IntoResponse, Response};
 use crate::embedded::File;
 use crate::error::ApiError;
 
-/// The page and what it loads, as `build.rs` finds them.
+/// The page and what it loads, as the build finds them.
 static FILES: &[File] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
 /// What a browser may do with them: load from this service, and be in no frame.
@@ -25,7 +25,7 @@ const PROTECTION: [(HeaderName, &str); 3] = [
 /// # Errors
 /// [`ApiError::NotFound`] where there is none.
 pub async fn index(request: HeaderMap) -> Result<Response, ApiError> {
-    send("/index.html", &request, "no-cache")
+    send(FILES, "/index.html", &request, "no-cache").ok_or_else(|| not_found("/"))
 }
 
 /// What the page loads, whose names change with it.
@@ -33,10 +33,16 @@ pub async fn index(request: HeaderMap) -> Result<Response, ApiError> {
 /// # Errors
 /// [`ApiError::NotFound`] where there is none.
 pub async fn asset(uri: Uri, request: HeaderMap) -> Result<Response, ApiError> {
-    send(uri.path(), &request, "public, max-age=31536000, immutable")
+    let path = uri.path();
+    send(FILES, path, &request, "public, max-age=31536000, immutable").ok_or_else(|| not_found(path))
 }
 
-fn send(path: &str, request: &HeaderMap, caching: &'static str) -> Result<Response, ApiError> {
-    let file = FILES.iter().find(|file| file.path == path).ok_or_else(|| ApiError::NotFound(path.to_owned()))?;
-    Ok((PROTECTION, [(header::CACHE_CONTROL, caching)], file.answer(request)).into_response())
+/// A file, with what a browser may do with it; none where there is none at the path.
+pub(super) fn send(files: &[File], path: &str, request: &HeaderMap, caching: &'static str) -> Option<Response> {
+    let file = files.iter().find(|file| file.path == path)?;
+    Some((PROTECTION, [(header::CACHE_CONTROL, caching)], file.answer(request)).into_response())
+}
+
+fn not_found(path: &str) -> ApiError {
+    ApiError::NotFound(path.to_owned())
 }

@@ -1,4 +1,4 @@
-//! A validation for people: every check as a text, or a line a case for the README.
+//! A validation for people: every check as a text, or a line a case for the guide.
 
 use std::fmt::{self, Display, Formatter, Write};
 

@@ -1,5 +1,7 @@
 //! Dispersions: numbers of a case that scatter, and the linear covariance of where the flight ends.
 
+use std::f64::consts::TAU;
+
 use reentry::Interrupt;
 use reentry::scenario::Bound;
 use reentry::sensitivity::{Moment, Slopes};
@@ -198,7 +200,8 @@ impl Dispersion {
 pub struct Covariance {
     /// Where the flight ends, on the ground.
     pub landing: Landing,
-    /// The standard deviations of the final columns; null where a slope has none.
+    /// The standard deviations of the final columns; null where a slope has none, and of an angle that goes around where they exceed that of an
+    /// even spread, 104°.
     #[schema(value_type = std::collections::BTreeMap<String, Option<f64>>)]
     pub standard_deviations: Map<String, Value>,
     /// What each of the dispersions gives, in their order.
@@ -260,19 +263,24 @@ impl Covariance {
         let ellipse = is_defined.then(|| CoreEllipse::of(landing));
         let trace = landing[0][0] + landing[1][1];
         let share = |part: f64, whole: f64| finite(part / whole);
-        let columns: Vec<_> = Dispersion::columns(known).map(|column| column.name).zip(2..).collect();
+        let columns: Vec<_> = Dispersion::columns(known).zip(2..).collect();
         let contribution = |(dispersion, part): (&Dispersion, &Vec<Vec<f64>>)| Contribution {
             pointers: dispersion.pointers.clone(),
             share: share(part[0][0] + part[1][1], trace),
             shares: columns
                 .iter()
-                .filter(|(name, row)| variance(*row, *row).sqrt() > rounding(name, slopes[*row].value))
-                .filter_map(|(name, row)| {
-                    Some(((*name).to_owned(), json!(share(part[*row][*row], variance(*row, *row))?)))
+                .filter(|(column, row)| variance(*row, *row).sqrt() > rounding(column.name, slopes[*row].value))
+                .filter_map(|(column, row)| {
+                    Some((column.name.to_owned(), json!(share(part[*row][*row], variance(*row, *row))?)))
                 })
                 .collect(),
         };
-        let deviation = |row: usize| finite(variance(row, row).sqrt());
+        // Beyond that of a direction of which nothing is known, an angle that goes around has none to first order.
+        let greatest =
+            |column: &Column| if column.turns() { unit.from_radians(TAU) / 12_f64.sqrt() } else { f64::INFINITY };
+        let deviation = |column: &Column, row: usize| {
+            finite(variance(row, row).sqrt()).filter(|deviation| *deviation <= greatest(column))
+        };
         Self {
             landing: Landing {
                 semi_major_axis: ellipse.map(|ellipse| ellipse.semi_major_axis),
@@ -283,7 +291,7 @@ impl Covariance {
             },
             standard_deviations: columns
                 .iter()
-                .map(|(name, row)| ((*name).to_owned(), json!(deviation(*row))))
+                .map(|(column, row)| (column.name.to_owned(), json!(deviation(column, *row))))
                 .collect(),
             dispersions: dispersions.iter().zip(&parts).map(contribution).collect(),
         }

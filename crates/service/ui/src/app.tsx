@@ -196,6 +196,7 @@ function Header() {
         >
           Validation
         </button>
+        <a href={address('guide/')}>Guide</a>
         <a href={address('docs/')}>API</a>
       </div>
       {isOpen.value && Validation && (

@@ -2,6 +2,7 @@ import { useComputed } from '@preact/signals';
 import type { Schemas } from './api';
 import { turned } from './case';
 import { capital, figuresOf, modelsInWords, number } from './figures';
+import { chapterOf, Explained } from './guide';
 import { type Name, QUANTITIES } from './quantities';
 import { Scroll } from './scroll';
 import { angleUnit, current, problem } from './store';
@@ -13,7 +14,9 @@ export function Problems() {
   return (
     <section class="notice bad" role="alert">
       <h2>{found.title}</h2>
-      <p>{found.detail}</p>
+      <p>
+        {found.detail} <Explained at={found.type.slice(1)} name={found.title} />
+      </p>
       {found.errors && (
         <ul>
           {found.errors.map(({ pointer, detail }) => (
@@ -21,7 +24,7 @@ export function Problems() {
               <button type="button" class="link" onClick={() => reveal(pointer)}>
                 {pointer || 'Case'}
               </button>{' '}
-              {detail}
+              {detail} <Explained at={chapterOf(pointer)} name={pointer || 'the case'} />
             </li>
           ))}
         </ul>
@@ -51,7 +54,9 @@ export function Warnings() {
     <section class="notice warn" aria-label="Warnings">
       <ul>
         {warnings.map(({ code, detail, time }) => (
-          <li key={`${code}${time}`}>{detail}</li>
+          <li key={`${code}${time}`}>
+            {detail} <Explained at={`warnings/${code}`} name={code} />
+          </li>
         ))}
       </ul>
     </section>

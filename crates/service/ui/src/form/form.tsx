@@ -2,9 +2,10 @@ import schema from 'virtual:schema';
 import { computed } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useState } from 'preact/hooks';
-import type { Case, State } from '../api';
+import { address, type Case, type State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
 import { capital } from '../figures';
+import { chapterOf } from '../guide';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
 import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
@@ -51,6 +52,14 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
         )}
       </summary>
       <div class="fold-body">
+        <p class="quiet fold-guide">
+          Guide:
+          {names.map((name) => (
+            <a key={name} href={address(chapterOf(pointer([name])))} target="_blank" rel="noopener">
+              {name.replaceAll('_', ' ')}
+            </a>
+          ))}
+        </p>
         {names.map((name) => (
           <Item
             key={name}

@@ -262,7 +262,7 @@ function Places({ run }: { run: Run }) {
               <button
                 type="button"
                 class="small"
-                aria-label={`Copy coordinates: ${mark.label}`}
+                aria-label={`Copy position of ${mark.label}`}
                 onClick={() => {
                   void copied(place).then(() => {
                     said.value = `Copied: ${place}`;

@@ -110,7 +110,7 @@ it('the table has the first and the last row of the flight', async () => {
 
 it('the coordinates of the impact can be copied', async () => {
   const { page } = await on('target_1');
-  await page.getByRole('button', { name: 'Copy coordinates: impact' }).click();
+  await page.getByRole('button', { name: 'Copy position of impact' }).click();
   await page.getByText(/^Copied: /).waitFor();
   const { final_state } = await ask(service.address, 'simulate', { ...example('target_1'), angle_unit: 'rad' });
   const degrees = (angle: number) => ((angle * 180) / Math.PI).toFixed(5);

@@ -313,7 +313,7 @@ describe.each([
   ['a desk, light', { viewport: { width: 1440, height: 1000 }, colorScheme: 'light' }],
 ] as const)('on %s', (_, options) => {
   it('nothing is wider than the screen, and axe finds nothing serious', async () => {
-    const { page } = await on(example('deorbit'), options);
+    const { page } = await on({ ...example('deorbit'), name: 'Capsule from orbit' }, options);
     await page.waitForLoadState('networkidle');
     const views = options.viewport.width < 900 ? ['Case', 'Flight'] : [''];
     for (const view of views) {

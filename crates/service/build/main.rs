@@ -1,4 +1,7 @@
-//! Writes the table of the page's files, by which they are compiled into the program.
+//! Writes the tables of the page's files and of the guide's, by which they are compiled into the program.
+
+#[path = "guide.rs"]
+mod guide;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -10,19 +13,24 @@ const BUILT: &str = "ui/dist";
 const FALLBACK: &str = "src/endpoints/page";
 
 fn main() -> io::Result<()> {
+    let out = PathBuf::from(env::var("OUT_DIR").map_err(io::Error::other)?);
     // To cargo, a folder that is not there has changed every time.
     fs::create_dir_all(BUILT)?;
     println!("cargo:rerun-if-changed={BUILT}");
     println!("cargo:rerun-if-changed={FALLBACK}");
     let built = Path::new(BUILT).join("index.html").exists();
     let root = fs::canonicalize(if built { BUILT } else { FALLBACK })?;
-    let files = files(&root)?.iter().map(|file| entry(&root, file)).collect::<io::Result<String>>()?;
-    let table = Path::new(&env::var("OUT_DIR").map_err(io::Error::other)?).join("page.rs");
-    fs::write(table, format!("&[\n{files}]"))
+    write_table(&root, &page_files(&root)?, &out.join("page.rs"))?;
+
+    for source in guide::SOURCES {
+        println!("cargo:rerun-if-changed={source}");
+    }
+    let root = out.join("guide");
+    write_table(&root, &guide::write(&root)?, &out.join("guide.rs"))
 }
 
 /// The page and what it loads; what was compressed lies beside what it was made from.
-fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
+fn page_files(root: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = vec![root.join("index.html")];
     for asset in fs::read_dir(root.join("assets"))? {
         let asset = asset?.path();
@@ -32,6 +40,12 @@ fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
     }
     files.sort();
     Ok(files)
+}
+
+/// Writes the table of files below a folder.
+fn write_table(root: &Path, files: &[PathBuf], table: &Path) -> io::Result<()> {
+    let entries = files.iter().map(|file| entry(root, file)).collect::<io::Result<String>>()?;
+    fs::write(table, format!("&[\n{entries}]"))
 }
 
 /// The entry of a file.
