@@ -101,8 +101,8 @@ function instantOf({ final_state: { utc } }: Answer): string | null {
 
 const PLANETS: Record<Schemas['PlanetModel'], string> = {
   earth_wgs84: 'WGS 84',
-  earth_jameson_listing: 'Thesis listing',
-  earth_jameson_text: 'Thesis text',
+  earth_jameson_listing: 'thesis listing',
+  earth_jameson_text: 'thesis text',
   custom: 'Custom',
 };
 const ATMOSPHERES: Record<Schemas['Atmosphere']['type'], string> = {
@@ -125,7 +125,8 @@ export function withPlanetsInWords(text: string): string {
 /** The models of a flight: planet, atmosphere, gravity. */
 export function modelsInWords({ planet, shape, atmosphere, gravity }: Answer['models']): string {
   const air = ATMOSPHERES[atmosphere as keyof typeof ATMOSPHERES] ?? atmosphere;
-  return `${PLANETS[planet]} ${shape}, ${air}, ${GRAVITIES[gravity as keyof typeof GRAVITIES] ?? gravity}`;
+  const ground = planet.startsWith('earth_jameson') ? `Earth ${shape} (${PLANETS[planet]})` : `${PLANETS[planet]} ${shape}`;
+  return `${ground}, ${air}, ${GRAVITIES[gravity as keyof typeof GRAVITIES] ?? gravity}`;
 }
 
 /** A number to so many digits, without zeros at its end. */

@@ -1,6 +1,17 @@
 import { describe, expect, it } from 'vitest';
 import type { Answer } from '../../src/api';
-import { columnOf, difference, endsApart, figuresOf, kilometres, modelsInWords, number, placeOf, reading } from '../../src/figures';
+import {
+  columnOf,
+  difference,
+  endsApart,
+  figuresOf,
+  kilometres,
+  modelsInWords,
+  number,
+  placeOf,
+  reading,
+  withPlanetsInWords,
+} from '../../src/figures';
 import { at, flightOf, indexBefore } from '../../src/flight';
 
 const peak = (value: number) => ({ value, time: 50, altitude: 40_000 });
@@ -148,6 +159,9 @@ it('models are told in words', () => {
     wind: 'still',
   };
   expect(modelsInWords(models as Answer['models'])).toBe('WGS 84 ellipsoid, U.S. Standard Atmosphere 1976, zonal gravity');
+  const thesis = { ...models, planet: 'earth_jameson_listing', shape: 'sphere', atmosphere: 'exponential', gravity: 'inverse_square' };
+  expect(modelsInWords(thesis as Answer['models'])).toBe('Earth sphere (thesis listing), exponential atmosphere, inverse-square gravity');
+  expect(withPlanetsInWords('place of impact, earth_jameson_text')).toBe('place of impact, thesis text');
 });
 
 it.each([
