@@ -35,7 +35,7 @@ pub fn convert_request(object: &mut Object) -> Option<ConvertRequest> {
     let has_unit = object.has("angle_unit");
     let angle_unit = angle_unit(object);
     let echo = object
-        .field("echo", "Echo the request")
+        .field("echo", "Echo the case")
         .doc("Whether the answer repeats the request, with every default filled in, as `case`.")
         .default(false)
         .boolean();

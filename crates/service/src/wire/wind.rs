@@ -53,9 +53,9 @@ fn constant(object: &mut Object) -> Option<Wind> {
         WAYS,
         |object| {
             let east =
-                object.field("east", "Eastward").doc("Towards the east, m/s.").unit("m/s").number(Bound::WIND);
+                object.field("east", "East component").doc("Towards the east, m/s.").unit("m/s").number(Bound::WIND);
             let north = object
-                .field("north", "Northward")
+                .field("north", "North component")
                 .doc("Towards the north, m/s.")
                 .unit("m/s")
                 .number(Bound::WIND);
@@ -92,12 +92,12 @@ fn table(object: &mut Object) -> Option<Wind> {
         WAYS,
         |object| {
             let east = object
-                .field("east", "Eastward")
+                .field("east", "East")
                 .doc("Towards the east, m/s.")
                 .unit("m/s")
                 .numbers(Bound::WIND, [1, MOST_ENTRIES]);
             let north = object
-                .field("north", "Northward")
+                .field("north", "North")
                 .doc("Towards the north, m/s.")
                 .unit("m/s")
                 .numbers(Bound::WIND, [1, MOST_ENTRIES]);
