@@ -49,7 +49,7 @@ export function Compare() {
         </button>
       </div>
       <Differences />
-      <p class="quiet">Small numbers: difference from the current flight.</p>
+      <p class="quiet">Small numbers: pinned minus current flight.</p>
     </section>
   );
 }
