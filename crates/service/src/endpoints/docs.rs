@@ -18,8 +18,9 @@ use crate::reply::reply;
 use crate::state::AppState;
 
 /// Without Swagger's bar and the validator of its own site.
-static CONFIG: LazyLock<Arc<Config<'static>>> =
-    LazyLock::new(|| Arc::new(Config::from("/openapi.json").validator_url("none").use_base_layout()));
+static CONFIG: LazyLock<Arc<Config<'static>>> = LazyLock::new(|| {
+    Arc::new(Config::from("/openapi.json").validator_url("none").use_base_layout().default_models_expand_depth(0))
+});
 
 /// The page is at `/docs/`, beside which its files lie.
 pub async fn redirect() -> Redirect {
