@@ -67,8 +67,8 @@ const ANGLE_UNITS: Words<AngleUnit> = Words {
     name: "AngleUnit",
     doc: "Unit of every angle in a request and in its response.",
     words: &[
-        word("rad", AngleUnit::Rad, "radians").doc("Radians."),
-        word("deg", AngleUnit::Deg, "degrees").doc("Degrees."),
+        word("rad", AngleUnit::Rad, "Radians").doc("Radians."),
+        word("deg", AngleUnit::Deg, "Degrees").doc("Degrees."),
     ],
 };
 

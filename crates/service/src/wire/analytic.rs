@@ -30,7 +30,7 @@ pub const SOLUTIONS: Words<Solution> = Words {
     words: &[
         word("shallow_glide", Solution::ShallowGlide, "Shallow glide")
             .doc("Equations 77 to 79: V² = g₀r₀/(βr₀ηk + 1), γ = -2g₀/(kβV²); valid up to |γ| = 5°. Requires lift."),
-        word("loh", Solution::Loh, "Loh")
+        word("loh", Solution::Loh, "Loh, second order")
             .doc("Equation 80: γ of a descent to second order, with the simulated speed. Requires lift."),
         word("steep_glide", Solution::SteepGlide, "Steep glide").doc(
             "Equations 81 to 83: `cos γ = cos γ_e + k(η - η_e)`, `V² = V_e² exp(2(γ_e - γ)/k)`. Requires lift and a \

@@ -49,7 +49,7 @@ pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
         "Kind of atmosphere.",
         &[
             variant("exponential", "Exponential", "Density with one scale height.", &exponential),
-            variant("us76", "U.S. Standard Atmosphere, 1976", "U.S. Standard Atmosphere, 1976.", &us76),
+            variant("us76", "U.S. Standard 1976", "U.S. Standard Atmosphere, 1976.", &us76),
             variant(
                 "layered_exponential",
                 "Layered exponential",
@@ -81,7 +81,7 @@ fn exponential(object: &mut Object) -> Option<Atmosphere> {
     object.named("ExponentialAtmosphere", "Density ρ₀ e^(-h/H) at the altitude h along the radius vector.");
     let is_given = object.has("surface_density") & object.has("scale_height");
     let surface_density = object
-        .field("surface_density", "Density at the surface")
+        .field("surface_density", "Surface density")
         .doc("Density ρ₀ at altitude 0, kg/m³.")
         .unit("kg/m³")
         .default(EARTH_JAMESON[0])
@@ -101,7 +101,7 @@ fn exponential(object: &mut Object) -> Option<Atmosphere> {
 const PRESETS: Words<()> = Words {
     name: "LayersPreset",
     doc: "Predefined layers.",
-    words: &[word("earth_seven_layer", (), "Earth in seven layers").doc(
+    words: &[word("earth_seven_layer", (), "Earth, 7 layers").doc(
         "The Earth in seven layers that match the density of `us76` at their bases of 0, 10, 43, 68, 82, 112 and 120 \
          km. The density is within 5 % of `us76` up to 130 km, and 47 % lower at 150 km.",
     )],
@@ -137,7 +137,7 @@ fn layered_exponential(object: &mut Object) -> Option<Atmosphere> {
 fn layer(object: &mut Object) -> Option<Layer> {
     object.named("Layer", "Layer of the atmosphere, up to the base of the next one.");
     let base_altitude = object
-        .field("base_altitude", "Base")
+        .field("base_altitude", "Base altitude")
         .doc("Altitude of the base along the radius vector, m. It must be greater than that of the previous layer.")
         .unit("m")
         .number(Bound::DISTANCE);
@@ -186,7 +186,7 @@ fn table(object: &mut Object) -> Option<Atmosphere> {
         .optional()
         .numbers(Bound::POSITIVE, ENTRIES);
     let speed_of_sound = object
-        .field("speed_of_sound", "Speeds of sound")
+        .field("speed_of_sound", "Speed of sound")
         .doc(
             "Speeds of sound, m/s, in place of those from the temperature. Not supported with `molar_mass` and \
              `heat_capacity_ratio`. Outside the table, the value at its end is used.",

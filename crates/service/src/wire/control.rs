@@ -29,7 +29,7 @@ const INTERPOLATION: Words<Interpolation> = Words {
     doc: "Interpolation between the entries of a schedule.",
     words: &[
         word("linear", Interpolation::Linear, "Linear").doc("Linear interpolation."),
-        word("step", Interpolation::Step, "Steps").doc("Each value holds from its entry up to the next greater one."),
+        word("step", Interpolation::Step, "Step").doc("Each value holds from its entry up to the next greater one."),
     ],
 };
 
@@ -76,14 +76,15 @@ fn schedule(object: &mut Object) -> Option<Schedule> {
 }
 
 fn entries(object: &mut Object) -> Option<Schedule> {
-    let against = object.field("against", "Against").doc("Independent variable of the schedule.").word(&AGAINST);
+    let against =
+        object.field("against", "Independent variable").doc("Independent variable of the schedule.").word(&AGAINST);
     let bound = match against {
         Some(Against::Altitude) => Bound::DISTANCE,
         Some(Against::Time | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
         None => Bound::FINITE,
     };
     let at = object
-        .field("at", "At")
+        .field("at", "Breakpoint")
         .doc(
             "Values of the independent variable, ascending, in its unit. Time, speed and Mach number must be at least \
              0.",

@@ -43,7 +43,7 @@ pub(super) fn dispersion(object: &mut Object) -> Option<Dispersion> {
          numbers of a list vary together.",
     );
     let pointers = object
-        .field("pointer", "Number")
+        .field("pointer", "Parameter")
         .doc(
             "JSON pointer of a number of the case, or of a list of numbers, which vary together. A multivariate \
              distribution takes one pointer per variable.",

@@ -72,7 +72,7 @@ pub static QUANTITIES: Words<Quantity> = Words {
             .unit(ANGLE)
             .doc("Angle of the velocity relative to the rotating planet above the plane normal to the radius."),
         word("mass", Quantity::Mass, "Mass, kg").unit("kg").doc("Mass of the vehicle, kg."),
-        word("air_speed", Quantity::AirSpeed, "Air speed, m/s").unit("m/s").doc("Speed relative to the air, m/s."),
+        word("air_speed", Quantity::AirSpeed, "Airspeed, m/s").unit("m/s").doc("Speed relative to the air, m/s."),
         word("inertial_speed", Quantity::InertialSpeed, "Inertial speed, m/s")
             .unit("m/s")
             .doc("Speed relative to inertial space, m/s."),
@@ -106,7 +106,7 @@ pub static QUANTITIES: Words<Quantity> = Words {
         word("deceleration", Quantity::Deceleration, "Deceleration, m/s²")
             .unit("m/s²")
             .doc("Deceleration -dV/dt of the speed relative to the rotating planet, m/s²."),
-        word("density", Quantity::Density, "Density, kg/m³").unit("kg/m³").doc("Density of the air, kg/m³."),
+        word("density", Quantity::Density, "Air density, kg/m³").unit("kg/m³").doc("Density of the air, kg/m³."),
     ],
 };
 
@@ -122,9 +122,9 @@ pub(super) fn event(object: &mut Object) -> Option<Event> {
         .doc("Name of the event; returned in the response. Conditions refer to the event by it.")
         .optional()
         .text();
-    let when = object.field("when", "When").doc("Condition that triggers the event.").object(condition);
+    let when = object.field("when", "Trigger").doc("Condition that triggers the event.").object(condition);
     let then = object
-        .field("then", "Then")
+        .field("then", "Effect")
         .doc(
             "Changes that the event makes. An event without changes only marks an instant; the response gives the \
              state there.",
@@ -161,13 +161,13 @@ fn crossing(object: &mut Object) -> Option<Condition> {
     };
     let falling = value(
         "falls_through",
-        "falls through",
+        "Falls below",
         "Value that the quantity crosses downwards, in its unit; an angle is in `angle_unit`. Not supported for \
          `time`.",
     );
     let rising = value(
         "rises_through",
-        "rises through",
+        "Rises above",
         "Value that the quantity crosses upwards, in its unit; an angle is in `angle_unit`.",
     );
     object.exactly_one(&["falls_through", "rises_through"]);
@@ -187,12 +187,12 @@ fn crossing(object: &mut Object) -> Option<Condition> {
 
 fn after(object: &mut Object) -> Option<Condition> {
     let event = object
-        .field("event", "or after the event")
+        .field("event", "Or after event")
         .doc("Name of another event; the condition is met `delay` seconds after it.")
         .optional()
         .text();
     let delay = object
-        .field("delay", "Delay after it")
+        .field("delay", "Delay after event")
         .doc("Time after that event, s.")
         .unit("s")
         .default(0.0)
@@ -227,7 +227,7 @@ fn effect(object: &mut Object) -> Option<Effect> {
         .optional()
         .object(aerodynamics);
     let impulse = object
-        .field("delta_v", "Impulse")
+        .field("delta_v", "Impulsive Δv")
         .doc("Impulsive change of velocity. It consumes no propellant: set `mass` to the mass after it.")
         .optional()
         .object(impulse);
@@ -236,10 +236,13 @@ fn effect(object: &mut Object) -> Option<Effect> {
         .doc("Constant thrust that the event switches on, or `\"off\"`.")
         .optional()
         .word_or(&THRUST_COMMAND, &OFF, |object| thrust(object).map(Engine::On));
-    let parachute =
-        object.field("deploy", "Parachute").doc("Parachute that the event deploys.").optional().object(parachute);
+    let parachute = object
+        .field("deploy", "Deploy parachute")
+        .doc("Parachute that the event deploys.")
+        .optional()
+        .object(parachute);
     let released = object
-        .field("release", "Release")
+        .field("release", "Release parachutes")
         .doc(
             "Names of parachutes that the event cuts off, before it deploys another. For a parachute that is not \
              deployed, the release has no effect and the response contains the warning `not_deployed`.",
@@ -255,7 +258,7 @@ fn impulse(object: &mut Object) -> Option<Impulse> {
     object.named("DeltaV", "Instantaneous change of velocity.");
     let along = along(object, "Direction of the change.");
     let speed_change = object
-        .field("value", "Change of speed")
+        .field("value", "Δv")
         .doc(
             "Change of velocity along the direction, m/s. A negative value acts against the direction: a deorbit burn \
              along the velocity is negative.",
@@ -323,17 +326,17 @@ const AXES: Words<ThrustAxis> = Words {
     name: "Axis",
     doc: "Direction that moves with the vehicle.",
     words: &[
-        word("velocity", ThrustAxis::Velocity, "velocity").doc("Along the velocity relative to the rotating planet."),
-        word("radial", ThrustAxis::Radial, "radius, outward").doc("Away from the planet's centre."),
-        word("normal", ThrustAxis::Normal, "normal, left")
+        word("velocity", ThrustAxis::Velocity, "Velocity").doc("Along the velocity relative to the rotating planet."),
+        word("radial", ThrustAxis::Radial, "Radial, outward").doc("Away from the planet's centre."),
+        word("normal", ThrustAxis::Normal, "Normal, left")
             .doc("Horizontal and perpendicular to the velocity, to the left of the flight direction."),
-        word("horizontal", ThrustAxis::Horizontal, "horizontal velocity")
+        word("horizontal", ThrustAxis::Horizontal, "Horizontal velocity")
             .doc("Along the horizontal component of the velocity relative to the rotating planet."),
     ],
 };
 
 fn along(object: &mut Object, doc: &'static str) -> Option<ThrustAxis> {
-    object.field("along", "Along").doc(doc).word_or(&ALONG, &AXES, inertial_direction)
+    object.field("along", "Direction").doc(doc).word_or(&ALONG, &AXES, inertial_direction)
 }
 
 fn inertial_direction(object: &mut Object) -> Option<ThrustAxis> {

@@ -29,9 +29,9 @@ const CONVECTIVE: Words<(Convective, bool)> = Words {
     doc: "Correlation of the convective heat flux in air, W/m², with the density ρ in kg/m³, the air speed V in m/s \
           and the nose radius r in m.",
     words: &[
-        word("sutton_graves", (Convective::SUTTON_GRAVES, true), "Sutton and Graves")
+        word("sutton_graves", (Convective::SUTTON_GRAVES, true), "Sutton–Graves")
             .doc("1.7415e-4 √(ρ/r) V³; NASA TR R-376, for 2.1 to 15.2 km/s."),
-        word("detra_kemp_riddell", (Convective::DetraKempRiddell, true), "Detra, Kemp and Riddell")
+        word("detra_kemp_riddell", (Convective::DetraKempRiddell, true), "Detra–Kemp–Riddell")
             .doc("1.1035e8/√r √(ρ/1.225) (V/7924.8)^3.15; Jet Propulsion 27 (1957), up to 8 km/s."),
         word("chapman", (Convective::Chapman, true), "Chapman")
             .doc("1.1035e8/√r √(ρ/1.225) (V/7924.8)³; NASA TR R-11, up to 11.2 km/s."),
@@ -45,7 +45,7 @@ const RADIATIVE: Words<Radiative> = Words {
           air speed V in m/s.",
     words: &[
         word("none", Radiative::None, "None").doc("No radiative heat flux."),
-        word("tauber_sutton", Radiative::TauberSutton, "Tauber and Sutton").doc(
+        word("tauber_sutton", Radiative::TauberSutton, "Tauber–Sutton").doc(
             "4.736e8 r^a ρ^1.22 f(V), with f tabulated from 9 to 16 km/s and zero below; J. Spacecraft 28 (1991), for \
              10 to 16 km/s, nose radii of 0.3 to 3 m and densities of 6.66e-5 to 6.31e-4 kg/m³.",
         ),
@@ -67,7 +67,7 @@ pub(super) fn heating(object: &mut Object) -> Option<Heating> {
     );
     let default = CoreHeating::default();
     let convective = object
-        .field("convective", "Convective")
+        .field("convective", "Convective heat flux")
         .doc(
             "Convective heat flux: the name of a correlation for air, or that of Sutton and Graves with the constant \
              of another gas.",
@@ -75,12 +75,12 @@ pub(super) fn heating(object: &mut Object) -> Option<Heating> {
         .default(CONVECTIVE.of((default.convective, true)))
         .word_or(&CONVECTIVE_FLUX, &CONVECTIVE, sutton_graves);
     let radiative = object
-        .field("radiative", "Radiative")
+        .field("radiative", "Radiative heat flux")
         .doc("Radiative heat flux from the shocked air.")
         .default(RADIATIVE.of(default.radiative))
         .word(&RADIATIVE);
     let emissivity = object
-        .field("emissivity", "Emissivity of the wall")
+        .field("emissivity", "Wall emissivity")
         .doc("Emissivity of the wall, greater than 0 and at most 1.")
         .default(default.emissivity)
         .number(Bound::EMISSIVITY);
@@ -93,7 +93,7 @@ fn sutton_graves(object: &mut Object) -> Option<(Convective, bool)> {
     object.named("SuttonGraves", "Correlation of Sutton and Graves for a given gas: k √(ρ/r) V³.");
     object.field("type", "Type").doc("Always `sutton_graves`.").constant("sutton_graves");
     let constant = object
-        .field("constant", "Constant")
+        .field("constant", "Sutton–Graves constant")
         .doc("Constant k, kg^0.5/m; 1.7415e-4 for air. NASA TR R-376 lists other gases.")
         .unit("√kg/m")
         .number(Bound::POSITIVE);

@@ -84,11 +84,11 @@ const MOMENTS: Words<Moment> = Words {
     name: "Moment",
     doc: "Moment of the flight.",
     words: &[
-        word("end", Moment::End, "The end").doc("End of the flight, after the events at that instant."),
-        word("start", Moment::Start, "The start").doc("Start of the flight, before the events at that instant."),
-        word("peak", Moment::Peak, "The peak")
+        word("end", Moment::End, "End").doc("End of the flight, after the events at that instant."),
+        word("start", Moment::Start, "Start").doc("Start of the flight, before the events at that instant."),
+        word("peak", Moment::Peak, "Maximum")
             .doc("Greatest value of the quantity over the flight, located between rows."),
-        word("lowest", Moment::Lowest, "The lowest").doc("Least value of the quantity over the flight."),
+        word("lowest", Moment::Lowest, "Minimum").doc("Least value of the quantity over the flight."),
     ],
 };
 
@@ -118,7 +118,7 @@ fn quantity(object: &mut Object) -> Option<FlightOutput> {
     let names: Vec<_> = columns.iter().map(|column| column.name).collect();
     let column = object.field("quantity", "Quantity").doc("Column of the trajectory.").name(&names);
     let at = object
-        .field("at", "At")
+        .field("at", "Evaluated at")
         .doc("Moment at which the quantity is evaluated.")
         .default("end")
         .word_or(&AT, &MOMENTS, moment);
@@ -159,7 +159,7 @@ fn site(object: &mut Object) -> Option<Site> {
     object.named("Site", "Site on the planet's surface.");
     let longitude = object.field("longitude", "Longitude").doc("Longitude, east positive.").angle(Bound::TURN);
     let geodetic_latitude = object
-        .field("geodetic_latitude", "Latitude, geodetic")
+        .field("geodetic_latitude", "Geodetic latitude")
         .doc("Angle of the surface normal above the equatorial plane, north positive.")
         .angle(Bound::QUARTER_TURN);
     Some(Site { longitude: longitude?, geodetic_latitude: geodetic_latitude? })

@@ -183,7 +183,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .optional()
         .objects([0, MOST_VARIED], dispersion);
     let verify = object
-        .field("verify", "Verify accuracy")
+        .field("verify", "Accuracy check")
         .doc(
             "Whether the response reports the numerical accuracy of the flight, as `verification`. It takes the \
              computing time of about two flights. Not supported for CSV and map formats.",
@@ -281,7 +281,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
 /// The unit of the angles that are read after it.
 pub(super) fn angle_unit(object: &mut Object) -> Option<AngleUnit> {
     let unit = object
-        .field("angle_unit", "Angle unit in the JSON")
+        .field("angle_unit", "Angle unit in JSON")
         .doc(
             "Unit of every angle in the request and in the response. If it is absent and an angle is not 0, the \
              response contains the warning `angle_unit_assumed`.",
@@ -294,7 +294,7 @@ pub(super) fn angle_unit(object: &mut Object) -> Option<AngleUnit> {
 
 /// The instant t = 0, which may be left out.
 pub(super) fn epoch(object: &mut Object, doc: &'static str) -> Option<Epoch> {
-    object.field("epoch", "Epoch of t = 0, UTC").doc(doc).optional().value(epoch::epoch_schema, Epoch::read)
+    object.field("epoch", "Epoch (UTC at t = 0)").doc(doc).optional().value(epoch::epoch_schema, Epoch::read)
 }
 
 /// The end of the flight, and its further conditions.
@@ -353,7 +353,7 @@ fn output(object: &mut Object) -> Option<Output> {
         .optional()
         .whole_number([1, usize::MAX]);
     let interval = object
-        .field("interval", "Interval between rows")
+        .field("interval", "Row interval")
         .doc("Time between rows, s.")
         .unit("s")
         .optional()
@@ -364,7 +364,7 @@ fn output(object: &mut Object) -> Option<Output> {
         .optional()
         .whole_number([2, usize::MAX]);
     let times = object
-        .field("times", "At times")
+        .field("times", "Row times")
         .doc("Times of the rows since the start, ascending, s. Times after the end of the flight are dropped.")
         .unit("s")
         .optional()

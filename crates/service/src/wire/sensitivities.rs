@@ -44,7 +44,7 @@ const MOST_OUTPUTS: usize = 64;
 /// The field `sensitivities` of a request.
 pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
     object
-        .field("sensitivities", "Sensitivities")
+        .field("sensitivities", "Sensitivity of the landing point")
         .doc(
             "Derivatives of the flight in the response: `true`, or outputs (`of`) by numbers of the case (`to`). Not \
              supported for CSV and map formats.",
@@ -59,9 +59,9 @@ pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
 
 fn matrix(object: &mut Object) -> Option<RequestedSensitivities> {
     object.named("SensitivityMatrix", "Derivatives of outputs by numbers of the case.");
-    let of = object.field("of", "Of").doc("Outputs to differentiate.").objects([1, MOST_OUTPUTS], output);
+    let of = object.field("of", "Outputs").doc("Outputs to differentiate.").objects([1, MOST_OUTPUTS], output);
     let to = object
-        .field("to", "To")
+        .field("to", "Inputs")
         .doc(
             "JSON pointers of numbers in this request, defaults included (see `echo`). A pointer to a list selects \
              each of its numbers. At most 64 numbers in total.",

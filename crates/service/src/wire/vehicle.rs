@@ -49,10 +49,10 @@ pub(super) fn aerodynamics(object: &mut Object) -> Option<Aerodynamics> {
                 "Ballistic coefficient and lift-to-drag ratio that do not depend on speed.",
                 &ballistic,
             ),
-            variant("mach_table", "By Mach number", "Coefficients by Mach number.", &mach_table),
+            variant("mach_table", "Mach number table", "Coefficients by Mach number.", &mach_table),
             variant(
                 "alpha_mach_table",
-                "By angle of attack and Mach number",
+                "Alpha–Mach table",
                 "Coefficients by angle of attack and Mach number.",
                 &alpha_mach_table,
             ),

@@ -41,8 +41,8 @@ pub(super) fn wind(object: &mut Object) -> Option<Wind> {
     object.variants(
         "Kind of wind.",
         &[
-            variant("constant", "Constant", "The same wind everywhere.", &constant),
-            variant("table", "By altitude", "Wind by altitude.", &table),
+            variant("constant", "Uniform", "The same wind everywhere.", &constant),
+            variant("table", "Altitude table", "Wind by altitude.", &table),
         ],
     )
 }
@@ -75,7 +75,7 @@ fn constant(object: &mut Object) -> Option<Wind> {
                     .unit("m/s")
                     .number(Bound::WIND_SPEED);
                 let from = object
-                .field("from", "From, clockwise from north")
+                .field("from", "Direction (from)")
                 .doc("Direction from which the wind blows, clockwise from north: 0 is a north wind, 270° a west wind. \
                       Within ±2π (±360°).")
                 .angle(Bound::TURN);
@@ -123,7 +123,7 @@ fn table(object: &mut Object) -> Option<Wind> {
                 .unit("m/s")
                 .numbers(Bound::WIND_SPEED, [1, MOST_ENTRIES]);
             let from = object
-                .field("from", "From")
+                .field("from", "Direction (from)")
                 .doc("Directions from which the wind blows, clockwise from north, within ±2π (±360°).")
                 .angles(Bound::TURN, MOST_ENTRIES);
             let sound = object.equally_long("altitude", &["speed", "from"]);

@@ -2,16 +2,54 @@ import { readFileSync } from 'node:fs';
 import type { Plugin } from 'vite';
 
 const ROOT = new URL('../../../../', import.meta.url);
-/** Cases of the service's own, with what to know of them. */
-const OWN = {
-  lifting_capsule:
-    'A made-up capsule. Its angle of attack gives it lift, which the bank turns to the side and back by a schedule. A drogue opens at 8 km within 1 s, the main parachute at 3 km within 8 s; it lands at 9 m/s, of which the wind has 5.',
-  deorbit:
-    'A made-up capsule of the size of a Soyuz: a braking burn half a revolution before the landing, separation, parachutes. They open at once here, which makes their loads greater than those of real ones.',
-  sample_return:
-    'The vehicle and the entry state of Stardust (AIAA 2008-1198), with one drag coefficient and parachutes of about its sizes. The place of entry is assumed, so that it comes down in Utah. Its greatest load is to be compared with the 32.9 g that are published.',
+/** Cases of the service's own, with a title and notes. */
+const OWN: Record<string, { title: string; notes: string }> = {
+  lifting_capsule: {
+    title: 'Lifting capsule',
+    notes:
+      'Fictitious capsule with lift from its angle of attack. The bank angle follows a schedule: to one side, then back. The drogue parachute inflates at 8 km in 1 s, the main parachute at 3 km in 8 s. Touchdown speed is 9 m/s, including 5 m/s of wind.',
+  },
+  deorbit: {
+    title: 'Capsule from orbit',
+    notes:
+      'Fictitious capsule of Soyuz size: deorbit burn half a revolution before landing, separation, parachutes. The parachutes open instantly in this case, so their opening loads are higher than those of a real capsule.',
+  },
+  sample_return: {
+    title: 'Sample return capsule',
+    notes:
+      'Vehicle and entry state of Stardust (AIAA 2008-1198), with a constant drag coefficient and parachutes of similar size. The entry point is assumed: the capsule lands in Utah. Compare the peak load with the published 32.9 g.',
+  },
 };
-const THESIS = ['target_1', 'target_2', 'impulse', 'shallow_glide', 'steep_glide', 'steep_ballistic', 'medium_glide_supercircular'];
+/** Notes on real flights, by their names. */
+const FLOWN: Record<string, string> = {
+  'Stardust, 15 January 2006':
+    'The entry latitude is not published; 41° N is assumed. Each additional degree lowers the peak load by 0.12 g and adds 0.6 s. The longitude is also assumed and does not affect the loads: with 123.3° W the capsule lands in Utah at 38.9° N 113.5° W, 160 km south of the actual landing point (40.4° N). The drag coefficient at Mach 42.7 is 1.5636 (project orp); with 1.464 (project asim) the peak load is 0.1 g higher. The drag table ends at Mach 10.5; below, its last value is used, which is too high. No wind. The peak load was not measured: the published value is from a simulation with drag multiplied by 1.0083 to match radar data at the drogue. Convective heating only (Sutton–Graves). The uncertainty of the load is the preflight 3σ dispersion.',
+  'Genesis, 8 September 2004':
+    'Latitude and azimuth are not published; those of Stardust, which landed in the same range, are assumed. At the equator the peak load is 1.2 g higher, at 45° 0.2 g lower. The longitude is also assumed and does not affect the loads: with 122.8° W the capsule lands in Utah at 39.0° N 113.4° W, 130 km south of the actual landing point (40.2° N). The 3σ uncertainty of the flight-path angle is 0.0274°. The peak load was not measured: the published value is from a simulation with drag multiplied by 0.919 to match radar data.',
+  'Apollo 10, 26 May 1969, as flown':
+    'The source has no bank history; lift up is assumed, as planned for the first dive. Only the first dive is simulated. The aerodynamic table ends at Mach 29.5.',
+  'Apollo 10, as planned':
+    'Entry at 400 000 ft, 36 310 ft/s and −6.52°, lift up. Published values are rounded to 1 s, 10 ft/s (11 091.7 m/s is 36 390 ft/s) and 0.1 g. The published altitude refers to the Fischer ellipsoid; WGS 84 is used here.',
+};
+/** The cases of the thesis, with their titles. */
+const THESIS: Record<string, string> = {
+  target_1: 'TARGET reference case 1, steep and fast',
+  target_2: 'TARGET reference case 2, banked lifting vehicle',
+  impulse: 'IMPULSE reference case, inertial vectors',
+  shallow_glide: 'Shallow gliding entry',
+  steep_glide: 'Steep gliding entry',
+  steep_ballistic: 'Steep ballistic entry',
+  medium_glide_supercircular: 'Medium gliding entry at supercircular speed',
+};
+/** The check cases of NASA, with their titles. */
+const CHECKS: Record<string, string> = {
+  '01': 'dropped sphere, no drag',
+  '06': 'dropped sphere with drag',
+  '07': 'dropped sphere, steady west wind',
+  '08': 'dropped sphere, wind shear',
+  '09': 'sphere launched eastward',
+  '10': 'sphere launched northward',
+};
 
 type Json = null | boolean | number | string | Json[] | { [name: string]: Json };
 type Tree = { [name: string]: Json };
@@ -44,20 +82,24 @@ function read(path: string): any {
 }
 
 function own(): Example[] {
-  return Object.entries(OWN).map(([file, notes]) => {
+  return Object.entries(OWN).map(([file, { title, notes }]) => {
     const request = read(`openapi/examples/${file}.json`);
-    return { group: 'Missions', title: request.name, case: request, notes };
+    return { group: 'Missions', title, case: { ...request, name: title }, notes };
   });
 }
 
 /** The seven tables of the thesis, with the constants of its listing. */
 function thesis(): Example[] {
-  return THESIS.map((file) => read(`tests/cases/thesis/${file}.json`)).map(({ title, shape, request }) => ({
-    group: 'Thesis (Jameson 2006)',
-    title: title.replace('Jameson 2006, ', ''),
-    case: { ...request, name: title.replace(/^Jameson 2006, Table \d: /, ''), planet: { model: 'earth_jameson_listing', shape } },
-    notes: `${/Table \d/.exec(title)} of R. E. Jameson's thesis (AFIT/GSS/ENY/06-M08, 2006), with the planet of its listing and its exponential atmosphere, which is 26 % denser at the ground than standard air. Its angles are in radians.`,
-  }));
+  return Object.entries(THESIS).map(([file, name]) => {
+    const { title, shape, request } = read(`tests/cases/thesis/${file}.json`);
+    const table = /Table \d/.exec(title);
+    return {
+      group: 'Thesis (Jameson 2006)',
+      title: `${table}: ${name}`,
+      case: { ...request, name, planet: { model: 'earth_jameson_listing', shape } },
+      notes: `${table} of R. E. Jameson's thesis (AFIT/GSS/ENY/06-M08, 2006). Planet constants of its program listing; exponential atmosphere with a surface density 26 % above that of the U.S. Standard Atmosphere 1976. Angles in radians.`,
+    };
+  });
 }
 
 /** Entries that were flown. */
@@ -66,8 +108,8 @@ function flown(): Example[] {
   return flights.map((flight: Tree) => {
     const like = flights.find((other: Tree) => other.name === flight.like);
     const { output: _, ...request } = [like, flight].reduce((merged, part) => merge(merged, part?.request ?? {}), defaults) as Tree;
-    const notes = `${flight.note} Source: ${flight.source}.`;
-    return { group: 'Flown', title: flight.name as string, case: { name: flight.name, ...request }, notes };
+    const notes = `${FLOWN[flight.name as string] ?? flight.note} Source: ${flight.source}.`;
+    return { group: 'Real flights', title: flight.name as string, case: { name: flight.name, ...request }, notes };
   });
 }
 
@@ -79,7 +121,7 @@ function checks(): Example[] {
   // By number: an object has `10` before `01`.
   const cases = Object.entries(file.cases as Record<string, Tree>).sort();
   return cases.map(([number, check]) => {
-    const title = `Check case ${Number(number)}: a sphere ${check.title}`;
+    const title = `Check case ${Number(number)}: ${CHECKS[number] ?? check.title}`;
     const wind = check.wind === undefined ? {} : { wind: check.wind };
     return {
       group: 'NASA check cases (TM-2015-218675)',

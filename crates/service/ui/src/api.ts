@@ -72,5 +72,10 @@ async function problemOf(response: Response): Promise<Problem> {
   const body = await response.json().catch(() => null);
   return body?.detail
     ? body
-    : { type: 'about:blank', title: response.statusText, status: response.status, detail: `The service answered ${response.status}.` };
+    : {
+        type: 'about:blank',
+        title: response.statusText,
+        status: response.status,
+        detail: `The service returned status ${response.status}.`,
+      };
 }

@@ -109,7 +109,7 @@ const LONGEST_FILE = 64 << 20;
 /** Opens the case of a file: a case, or an answer that repeats its own. A file that has none changes nothing. */
 async function openFile(file: File): Promise<void> {
   try {
-    if (file.size > LONGEST_FILE) throw new Error('it is longer than 64 MiB');
+    if (file.size > LONGEST_FILE) throw new Error('it exceeds 64 MiB');
     const tree = JSON.parse(await file.text());
     const found = tree?.case ?? tree;
     const why = whyNoCase(found);
@@ -117,7 +117,7 @@ async function openFile(file: File): Promise<void> {
     open(found);
     notice.value = null;
   } catch (error) {
-    notice.value = `${file.name} is not a case: ${error instanceof Error ? error.message : error}. The case on the page stays as it was.`;
+    notice.value = `${file.name} is not a valid case: ${error instanceof Error ? error.message : error}. The current case is unchanged.`;
   }
 }
 
@@ -161,7 +161,7 @@ function Header() {
   return (
     <header class="top">
       <h1>reentry</h1>
-      <p class="quiet tagline">Flights back through the atmosphere</p>
+      <p class="quiet tagline">Atmospheric entry simulator</p>
       <output class="quiet waiting" aria-live="polite">
         {waiting.value}
       </output>
@@ -173,7 +173,7 @@ function Header() {
           ↷
         </button>
         <fieldset class="segments">
-          <legend class="hidden">Unit of angles</legend>
+          <legend class="hidden">Angle unit</legend>
           {(['deg', 'rad'] as const).map((unit) => (
             <button
               key={unit}
@@ -229,7 +229,7 @@ function Theme() {
     >
       {THEMES.map((name) => (
         <option key={name} value={name}>
-          {name}
+          {`Theme: ${name}`}
         </option>
       ))}
     </select>
@@ -246,7 +246,7 @@ function Open() {
   const list = useExamples();
   const groups = [...new Set(list.value.map(({ group }) => group))];
   return (
-    <section class="open" aria-label="Which case">
+    <section class="open" aria-label="Open a case">
       <label for="example">Open</label>
       <select
         id="example"
@@ -258,7 +258,7 @@ function Open() {
           event.currentTarget.value = '';
         }}
       >
-        <option value="">example or recent case …</option>
+        <option value="">Example or recent case …</option>
         {groups.map((group) => (
           <optgroup key={group} label={group}>
             {list.value.map((example, index) =>
@@ -274,13 +274,13 @@ function Open() {
           <optgroup label="Recent">
             {recent.value.map(({ id, at, case: { name } }, index) => (
               <option key={id} value={`recent ${index}`}>
-                {`${name ?? 'Without a name'}, ${dayOf(at)}`}
+                {`${name ?? 'Unnamed case'}, ${dayOf(at)}`}
               </option>
             ))}
           </optgroup>
         )}
       </select>
-      <button type="button" onClick={() => open(structuredClone(NEW))} title="A capsule in standard air, to begin with">
+      <button type="button" onClick={() => open(structuredClone(NEW))} title="New case: capsule in the U.S. Standard Atmosphere 1976">
         New
       </button>
       <label for="file">File</label>
@@ -312,7 +312,7 @@ function Open() {
 
 function FlightView() {
   const Maps = useLater(current.value !== null, () => import('./map/map'));
-  if (!current.value) return <p class="quiet">{isBusy.value ? 'Flying …' : 'No flight yet.'}</p>;
+  if (!current.value) return <p class="quiet">{isBusy.value ? 'Computing …' : 'No results yet.'}</p>;
   return (
     <>
       <div class="panel-head">
@@ -325,7 +325,7 @@ function FlightView() {
       <Take />
       <Plots />
       <Compare />
-      {Maps ? <Maps /> : <p class="quiet map-space">The map is loading …</p>}
+      {Maps ? <Maps /> : <p class="quiet map-space">Loading map …</p>}
       <Theories />
       <Sensitivities />
       <Dispersions />

@@ -1,7 +1,7 @@
 import { useComputed } from '@preact/signals';
 import type { Schemas } from './api';
 import { turned } from './case';
-import { figuresOf, number } from './figures';
+import { capital, figuresOf, modelsInWords, number } from './figures';
 import { chapterOf, Explained } from './guide';
 import { type Name, QUANTITIES } from './quantities';
 import { Scroll } from './scroll';
@@ -22,14 +22,14 @@ export function Problems() {
           {found.errors.map(({ pointer, detail }) => (
             <li key={pointer + detail}>
               <button type="button" class="link" onClick={() => reveal(pointer)}>
-                {pointer || 'the case'}
+                {pointer || 'Case'}
               </button>{' '}
               {detail} <Explained at={chapterOf(pointer)} name={pointer || 'the case'} />
             </li>
           ))}
         </ul>
       )}
-      {current.value && <p class="quiet">Shown below is the last flight that could be flown.</p>}
+      {current.value && <p class="quiet">Results below are from the last valid case.</p>}
     </section>
   );
 }
@@ -67,7 +67,7 @@ export function Warnings() {
 export function Cards() {
   const figures = useComputed(() => (current.value ? figuresOf(current.value.flight, angleUnit.value) : [])).value;
   return (
-    <dl class={problem.value ? 'cards stale' : 'cards'} aria-label="Figures of the flight">
+    <dl class={problem.value ? 'cards stale' : 'cards'} aria-label="Key figures">
       {figures.map(({ label, unit, value, note, parts }) => (
         <div class={parts ? 'card wide' : 'card'} key={label}>
           <dt>{label}</dt>
@@ -92,13 +92,13 @@ export function Computing() {
   const { solver, models, verification, version } = answer;
   return (
     <p class="quiet">
-      {models.planet}, {models.shape}, {models.atmosphere}, {models.gravity}. {solver.steps} steps, {solver.evaluations} right-hand sides,{' '}
-      {number(solver.elapsed * 1e6, 3)} µs. reentry {version}.
+      {modelsInWords(models)}; {solver.steps} steps, {solver.evaluations} function evaluations, {number(solver.elapsed * 1e3, 3)} ms.
+      reentry {version}.
       {verification && (
         <>
           {' '}
-          At a hundredth of the tolerance the flight ends {number(verification.distance, 2)} m and{' '}
-          {number(Math.abs(verification.time_difference), 2)} s from here.
+          Accuracy check: at 1/100 of the tolerance, the end point differs by {number(verification.distance, 2)} m and{' '}
+          {number(Math.abs(verification.time_difference), 2)} s.
         </>
       )}
     </p>
@@ -106,6 +106,20 @@ export function Computing() {
 }
 
 const ENDS = { time: 's', longitude: '', geocentric_latitude: '', speed: 'm/s', flight_path_angle: '' } as const;
+/** The units of the inputs; of angles that of the reader. */
+const INPUTS: Partial<Record<keyof Schemas['Gradient'], string>> = {
+  mass: 'kg',
+  reference_area: 'm²',
+  surface_density: 'kg/m³',
+  radius: 'm',
+  speed: 'm/s',
+};
+
+/** A quantity as people call it, with its unit where it has one. */
+function titled(name: string, unit: string | undefined): string {
+  const label = name in QUANTITIES ? QUANTITIES[name as Name].label : capital(name.replaceAll('_', ' '));
+  return unit ? `${label}, ${unit}` : label;
+}
 
 /** The derivatives, where they were asked. */
 export function Sensitivities() {
@@ -114,31 +128,33 @@ export function Sensitivities() {
   if (!sensitivities) return null;
   if ('matrix' in sensitivities) return <Matrix of={sensitivities} unit={answer.angle_unit} />;
   const ends = Object.keys(ENDS) as (keyof typeof ENDS)[];
-  const causes = Object.keys(sensitivities.time) as (keyof typeof sensitivities.time)[];
   const isAngle = (name: string) => name in QUANTITIES && QUANTITIES[name as Name].angle;
+  // Without those that the case does not have.
+  const inputs = (Object.keys(sensitivities.time) as (keyof Schemas['Gradient'])[]).filter((input) =>
+    ends.some((end) => sensitivities[end][input] !== null),
+  );
   const turn = (name: string) => (isAngle(name) ? (turned(1, answer.angle_unit, angleUnit.value) as number) : 1);
   return (
     <section aria-label="Sensitivities">
-      <h2>Sensitivities of the end</h2>
+      <h2>Sensitivity of the landing point</h2>
       <Scroll label="Table of sensitivities">
         <table>
           <thead>
             <tr>
-              <th scope="col">by</th>
+              <th scope="col">Input</th>
               {ends.map((end) => (
                 <th scope="col" key={end}>
-                  {end.replaceAll('_', ' ')}
-                  {`, ${ENDS[end] || angleUnit.value}`}
+                  {titled(end, ENDS[end] || angleUnit.value)}
                 </th>
               ))}
             </tr>
           </thead>
           <tbody>
-            {causes.map((cause) => (
-              <tr key={cause}>
-                <th scope="row">{cause.replaceAll('_', ' ')}</th>
+            {inputs.map((input) => (
+              <tr key={input}>
+                <th scope="row">{titled(input, isAngle(input) ? angleUnit.value : INPUTS[input])}</th>
                 {ends.map((end) => (
-                  <td key={end}>{number((sensitivities[end][cause] ?? Number.NaN) * (turn(end) / turn(cause)), 5)}</td>
+                  <td key={end}>{number((sensitivities[end][input] ?? Number.NaN) * (turn(end) / turn(input)), 5)}</td>
                 ))}
               </tr>
             ))}
@@ -158,10 +174,10 @@ function Matrix({ of, unit }: { of: Schemas['Matrix']; unit: string }) {
         <table>
           <thead>
             <tr>
-              <th scope="col">by</th>
+              <th scope="col">Input</th>
               {of.of.map(({ quantity, time }, row) => (
                 <th scope="col" key={`${quantity}${row}`}>
-                  {quantity.replaceAll('_', ' ')}
+                  {titled(quantity, undefined)}
                   {time === null ? '' : ` at ${number(time)} s`}
                 </th>
               ))}
@@ -179,7 +195,7 @@ function Matrix({ of, unit }: { of: Schemas['Matrix']; unit: string }) {
           </tbody>
         </table>
       </Scroll>
-      <p class="quiet">In the units of the case; its angles are in {unit}.</p>
+      <p class="quiet">Units are those of the case; angles in {unit}.</p>
     </section>
   );
 }
@@ -192,17 +208,17 @@ export function Dispersions() {
   const azimuth = landing.azimuth === null ? Number.NaN : (turned(landing.azimuth, answer.angle_unit, angleUnit.value) as number);
   return (
     <section aria-label="Dispersions">
-      <h2>Dispersions of the landing</h2>
+      <h2>Landing dispersion</h2>
       <p>
-        The ellipse of one standard deviation: {number(landing.semi_major_axis ?? Number.NaN, 4)} m by{' '}
-        {number(landing.semi_minor_axis ?? Number.NaN, 4)} m, its major axis at {number(azimuth, 4)} {angleUnit.value} from north.
+        1σ ellipse: semi-axes {number(landing.semi_major_axis ?? Number.NaN, 4)} m and {number(landing.semi_minor_axis ?? Number.NaN, 4)} m;
+        azimuth of the major axis {number(azimuth, 4)} {angleUnit.value}.
       </p>
       <Scroll label="Table of dispersions">
         <table>
           <thead>
             <tr>
-              <th scope="col">by</th>
-              <th scope="col">share of the variance</th>
+              <th scope="col">Input</th>
+              <th scope="col">Share of variance</th>
             </tr>
           </thead>
           <tbody>

@@ -25,7 +25,7 @@ export function Pin() {
       type="button"
       onClick={pin}
       disabled={!current.value || pins.value.length >= MOST}
-      title="It stays in the plots and on the map while the case changes"
+      title="Keep this flight in the plots and on the map while you change the case"
     >
       Pin this flight
     </button>
@@ -36,9 +36,9 @@ export function Pin() {
 export function Compare() {
   if (pins.value.length === 0) return null;
   return (
-    <section class="panel" aria-label="Compare">
+    <section class="panel" aria-label="Comparison">
       <div class="panel-head">
-        <h2>Compare</h2>
+        <h2>Comparison</h2>
         <button
           type="button"
           onClick={() => {
@@ -49,6 +49,7 @@ export function Compare() {
         </button>
       </div>
       <Differences />
+      <p class="quiet">Small numbers: pinned minus current flight.</p>
     </section>
   );
 }
@@ -60,7 +61,7 @@ function Differences() {
   const mine = figuresOf(first.flight, unit);
   const theirs = others.map((run) => new Map(figuresOf(run.flight, unit).map((figure) => [figure.label, figure])));
   return (
-    <Scroll label="Table of differences">
+    <Scroll label="Differences">
       <table>
         <thead>
           <tr>
@@ -88,7 +89,7 @@ function Differences() {
             </tr>
           ))}
           <tr>
-            <th scope="row">Distance between the ends, km</th>
+            <th scope="row">Distance between end points, km</th>
             <td>–</td>
             {others.map((run) => (
               <td key={run.id}>{number(endsApart(first.flight, run.flight), 5)}</td>
@@ -137,7 +138,7 @@ function shown({ value }: Figure): string {
 
 const SOLUTIONS: Record<Solution, string> = {
   shallow_glide: 'Shallow glide',
-  loh: 'Loh’s second order',
+  loh: 'Loh, second order',
   steep_glide: 'Steep glide',
   steep_ballistic: 'Steep ballistic',
   medium_glide: 'Medium glide',
@@ -150,7 +151,7 @@ export function Theories() {
     <section class="panel" aria-label="Theory">
       <div class="panel-head">
         <h2>Theory</h2>
-        <label for="theory">beside the flight</label>
+        <label for="theory">Overlay</label>
         <select
           id="theory"
           value={solution.value ?? ''}
@@ -158,7 +159,7 @@ export function Theories() {
             solution.value = (event.currentTarget.value || null) as Solution | null;
           }}
         >
-          <option value="">none</option>
+          <option value="">None</option>
           {Object.entries(SOLUTIONS).map(([name, label]) => (
             <option key={name} value={name}>
               {label}
@@ -168,10 +169,10 @@ export function Theories() {
       </div>
       {answer && (
         <p>
-          {SOLUTIONS[answer.solution]}, dashed in the plots,{' '}
+          {SOLUTIONS[answer.solution]}{' '}
           {answer.valid.from_altitude === null || answer.valid.to_altitude === null
-            ? 'gives no number here: '
-            : `holds from ${number(answer.valid.from_altitude / 1e3, 4)} to ${number(answer.valid.to_altitude / 1e3, 4)} km: `}
+            ? 'is not valid for this flight: '
+            : `(dashed) is valid from ${number(answer.valid.from_altitude / 1e3, 3)} down to ${number(answer.valid.to_altitude / 1e3, 3)} km, where `}
           {answer.valid.ends_because}.
         </p>
       )}

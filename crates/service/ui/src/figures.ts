@@ -1,4 +1,4 @@
-import type { Answer } from './api';
+import type { Answer, Schemas } from './api';
 import { endOf, type Flight, type Numbers } from './flight';
 import { type AngleUnit, type Name, QUANTITIES, scaleOf, unitOf } from './quantities';
 
@@ -20,7 +20,7 @@ const PEAKS = ['load_factor', 'deceleration', 'dynamic_pressure', 'mach', 'heat_
 export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
   const { final, answer } = flight;
   const end = (name: Name): Figure => ({
-    label: `${QUANTITIES[name].label} at the end`,
+    label: `Final ${QUANTITIES[name].label.toLowerCase()}`,
     unit: unitOf(name, angleUnit),
     value: (final[name] ?? Number.NaN) * scaleOf(name, angleUnit),
   });
@@ -42,12 +42,22 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
   });
   const highest = answer.peaks.altitude;
   return [
-    { label: 'Time', unit: 's', value: final.time ?? Number.NaN, note: capital(endOf(answer)) },
-    { label: 'Place', unit: '', value: placeOf(final, angleUnit), note: 'geodetic latitude, longitude' },
+    {
+      label: 'Time',
+      unit: 's',
+      value: final.time ?? Number.NaN,
+      note: [capital(endOf(answer)), instantOf(answer)].filter(Boolean).join(', '),
+    },
+    { label: 'Final position', unit: '', value: placeOf(final, angleUnit), note: 'geodetic latitude, longitude' },
     end('speed'),
     end('flight_path_angle'),
     ...peaks,
-    { label: 'Highest point', unit: 'km', value: highest.value / 1e3, note: `${number(highest.time, 5)} s` },
+    {
+      label: 'Maximum altitude',
+      unit: 'km',
+      value: highest.value / 1e3,
+      note: highest.time > (answer.initial_state.time ?? 0) ? `${number(highest.time, 5)} s` : 'at the start',
+    },
     final.downrange === undefined
       ? { label: 'Ground range', unit: 'km', value: (final.ground_range ?? Number.NaN) / 1e3 }
       : { label: 'Downrange', unit: 'km', value: final.downrange / 1e3 },
@@ -62,7 +72,7 @@ function partsOf({ peaks, phases, events }: Answer): { parts?: string } {
   const told = (phases ?? []).filter((phase) => phase.peaks.load_factor.value >= SHARE * peaks.load_factor.value);
   if (told.length < 2) return {};
   const from = (origin: (typeof told)[number]['from']) => {
-    if (!origin) return 'at first';
+    if (!origin) return 'before the first event';
     const name = origin.name ?? events?.find(({ index }) => index === origin.index)?.name ?? `event ${origin.index + 1}`;
     return origin.burnout ? `after burnout of ${name}` : `after ${name}`;
   };
@@ -82,7 +92,42 @@ export function placeOf(row: Numbers, unit: AngleUnit): string {
   return `${written('geodetic_latitude')}, ${written('longitude')}`;
 }
 
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+export const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** When a flight ends, in UTC to the second; nothing where its case has no epoch. */
+function instantOf({ final_state: { utc } }: Answer): string | null {
+  return utc ? `${utc.slice(0, 19).replace('T', ' ')} UTC` : null;
+}
+
+const PLANETS: Record<Schemas['PlanetModel'], string> = {
+  earth_wgs84: 'WGS 84',
+  earth_jameson_listing: 'thesis listing',
+  earth_jameson_text: 'thesis text',
+  custom: 'Custom',
+};
+const ATMOSPHERES: Record<Schemas['Atmosphere']['type'], string> = {
+  exponential: 'exponential atmosphere',
+  us76: 'U.S. Standard Atmosphere 1976',
+  layered_exponential: 'layered exponential atmosphere',
+  table: 'tabulated atmosphere',
+  vacuum: 'no atmosphere',
+};
+const GRAVITIES: Record<Schemas['Gravity']['type'], string> = {
+  inverse_square: 'inverse-square gravity',
+  zonal: 'zonal gravity',
+};
+
+/** A text with the names of planets in words. */
+export function withPlanetsInWords(text: string): string {
+  return text.replaceAll(/earth_\w+/g, (name) => PLANETS[name as Schemas['PlanetModel']] ?? name);
+}
+
+/** The models of a flight: planet, atmosphere, gravity. */
+export function modelsInWords({ planet, shape, atmosphere, gravity }: Answer['models']): string {
+  const air = ATMOSPHERES[atmosphere as keyof typeof ATMOSPHERES] ?? atmosphere;
+  const ground = planet.startsWith('earth_jameson') ? `Earth ${shape} (${PLANETS[planet]})` : `${PLANETS[planet]} ${shape}`;
+  return `${ground}, ${air}, ${GRAVITIES[gravity as keyof typeof GRAVITIES] ?? gravity}`;
+}
 
 /** A number to so many digits, without zeros at its end. */
 export function number(value: number, digits = 6): string {

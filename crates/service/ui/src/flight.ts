@@ -39,10 +39,10 @@ export interface Run {
 const DEGREES = 180 / Math.PI;
 
 const PEAKS: Partial<Record<keyof Answer['peaks'], string>> = {
-  load_factor: 'greatest load',
-  dynamic_pressure: 'greatest dynamic pressure',
-  heat_flux: 'greatest heat flux',
-  altitude: 'highest point',
+  load_factor: 'peak load factor',
+  dynamic_pressure: 'peak dynamic pressure',
+  heat_flux: 'peak heat flux',
+  altitude: 'maximum altitude',
 };
 
 const ENDS: Record<Answer['termination'], string> = {
@@ -50,7 +50,7 @@ const ENDS: Record<Answer['termination'], string> = {
   surface_impact: 'impact',
   time_limit: 'time limit',
   condition: 'stop condition',
-  atmosphere_exit: 'exit',
+  atmosphere_exit: 'atmosphere exit',
 };
 
 /** The flight of an answer with a trajectory. */

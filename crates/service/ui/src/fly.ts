@@ -60,7 +60,7 @@ export async function opened(): Promise<boolean> {
   if (location.hash !== hash) return true;
   address = hash;
   if (found instanceof Error) {
-    notice.value = `The case of this link cannot be opened: ${found.message}.`;
+    notice.value = `Cannot open the case in this link: ${found.message}.`;
     if (Object.keys(draft.peek()).length > 0) kept();
     return false;
   }
@@ -153,7 +153,7 @@ async function flyOn(): Promise<void> {
         isWanted = true;
         failing ||= began;
         if (found.status === 429) interval = Math.min(2 * interval, INTERVAL.most);
-        waiting.value = isAway(found) ? 'The service does not answer; trying again …' : 'The service is busy; trying again …';
+        waiting.value = isAway(found) ? 'Service not responding; retrying …' : 'Service busy; retrying …';
         if (isAway(found) && performance.now() - failing > PATIENCE) problem.value = found;
         await passed(pause);
       }
@@ -242,7 +242,7 @@ export async function completed(id: number): Promise<void> {
 /** What went wrong, as a problem document, also where the service did not answer. */
 function problemOf(error: unknown): Problem {
   if (error instanceof ProblemError) return error.problem;
-  return { type: 'about:blank', title: 'No answer', status: 0, detail: 'The service does not answer. Is it running?' };
+  return { type: 'about:blank', title: 'No response', status: 0, detail: 'The service does not respond. Check that it is running.' };
 }
 
 /** Whether nobody answered, or a proxy in the service's place. */

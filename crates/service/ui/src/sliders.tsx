@@ -49,7 +49,7 @@ export function Sliders() {
   const shown = SLIDERS.filter((slider) => typeof (get(draft.value, slider.path) ?? slider.without) === 'number');
   return (
     <fieldset class="sliders">
-      <legend>Vary</legend>
+      <legend>Sliders</legend>
       {shown.map((slider) => (
         <SliderLine key={slider.path.join('/')} slider={slider} />
       ))}

@@ -30,13 +30,13 @@ export function Take() {
     } catch (error) {
       say(
         error instanceof ProblemError
-          ? `Not saved: ${[error.message, ...(error.problem.errors ?? []).map(({ pointer, detail }) => `${pointer} ${detail}`)].join(' ')}`
-          : 'Not saved: the service does not answer.',
+          ? `Download failed: ${[error.message, ...(error.problem.errors ?? []).map(({ pointer, detail }) => `${pointer} ${detail}`)].join(' ')}`
+          : 'Download failed: the service does not respond.',
       );
     }
   };
   return (
-    <section class="take" aria-label="Take along">
+    <section class="take" aria-label="Export">
       <div class="buttons">
         <span class="quiet">Copy</span>
         <button type="button" onClick={() => void link()}>
@@ -45,8 +45,8 @@ export function Take() {
         <button type="button" onClick={() => void copy('curl command', asCurl(tidied(draft.value)))}>
           curl
         </button>
-        <button type="button" onClick={() => void copy('JSON', asJson(tidied(draft.value)))}>
-          JSON
+        <button type="button" onClick={() => void copy('Case JSON', asJson(tidied(draft.value)))}>
+          Case JSON
         </button>
         <button type="button" onClick={() => void copy('Python program', asPython(tidied(draft.value)))}>
           Python
@@ -61,7 +61,10 @@ export function Take() {
         ))}
         <button
           type="button"
-          onClick={() => saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName(draft.value)}.case.json`)}
+          onClick={() => {
+            saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName(draft.value)}.case.json`);
+            say('Case file saved');
+          }}
         >
           Case file
         </button>

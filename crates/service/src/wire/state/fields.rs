@@ -18,7 +18,7 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
         &[
             variant(
                 "planet_relative",
-                "Planet-relative (thesis)",
+                "Planet-relative",
                 "Speed, flight-path angle and heading relative to the rotating planet, measured from the geocentric \
                  horizontal.",
                 &|object| planet_relative(object, has_epoch),
@@ -30,18 +30,16 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
                  horizontal.",
                 &|object| geodetic(object, has_epoch),
             ),
-            variant("ecef", "Planet-fixed vectors (ECEF)", "Planet-fixed position and velocity vectors.", &|object| {
+            variant("ecef", "ECEF vectors", "Planet-fixed position and velocity vectors.", &|object| {
                 ecef(object, has_epoch)
             }),
-            variant("eci", "Inertial vectors (ECI)", "Inertial position and velocity vectors.", &|object| {
-                eci(object, has_epoch)
-            }),
+            variant("eci", "ECI vectors", "Inertial position and velocity vectors.", &|object| eci(object, has_epoch)),
             variant("orbital_elements", "Orbital elements", "Classical orbital elements.", &|object| {
                 orbital_elements(object, has_epoch)
             }),
             variant(
                 "inertial_flight_path",
-                "Inertial entry interface",
+                "Inertial flight path",
                 "Speed, flight-path angle and heading of the inertial velocity, measured from the geocentric \
                  horizontal.",
                 &|object| inertial_flight_path(object, has_epoch),
@@ -60,7 +58,7 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
     let longitude =
         object.field("longitude", "Longitude").doc("Longitude, east positive, within ±2π (±360°).").angle(Bound::TURN);
     let geocentric_latitude = object
-        .field("geocentric_latitude", "Latitude, geocentric")
+        .field("geocentric_latitude", "Geocentric latitude")
         .doc("Latitude, north positive, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let speed = object
@@ -76,7 +74,7 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
         )
         .angle(Bound::QUARTER_TURN);
     let heading = object
-        .field("heading", "Heading, from east to north")
+        .field("heading", "Heading, from east")
         .doc(
             "Heading of the relative velocity, from east (0) towards north (π/2), within ±2π (±360°). Exactly one of \
              `heading` and `azimuth` must be given.",
@@ -84,7 +82,7 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
         .optional()
         .angle(Bound::TURN);
     let azimuth = object
-        .field("azimuth", "Azimuth, clockwise from north")
+        .field("azimuth", "Azimuth, from north")
         .doc(
             "Azimuth of the relative velocity, clockwise from north, within ±2π (±360°). Exactly one of `heading` and \
              `azimuth` must be given.",
@@ -110,14 +108,14 @@ fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
         "Position and velocity relative to the rotating planet; angles are measured from the geodetic horizontal.",
     );
     let geodetic_altitude = object
-        .field("geodetic_altitude", "Altitude, geodetic")
+        .field("geodetic_altitude", "Geodetic altitude")
         .doc("Altitude above the planet's surface along the surface normal, m.")
         .unit("m")
         .number(Bound::DISTANCE);
     let longitude =
         object.field("longitude", "Longitude").doc("Longitude, east positive, within ±2π (±360°).").angle(Bound::TURN);
     let geodetic_latitude = object
-        .field("geodetic_latitude", "Latitude, geodetic")
+        .field("geodetic_latitude", "Geodetic latitude")
         .doc("Latitude, north positive, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let speed = object
@@ -130,7 +128,7 @@ fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
         .doc("Angle of the relative velocity above the geodetic horizontal, within ±π/2 (±90°); negative in descent.")
         .angle(Bound::QUARTER_TURN);
     let azimuth = object
-        .field("azimuth", "Azimuth, clockwise from north")
+        .field("azimuth", "Azimuth, from north")
         .doc("Azimuth of the relative velocity, clockwise from north, within ±2π (±360°). Responses give [0, 2π).")
         .angle(Bound::TURN);
     let sidereal = sidereal(object, has_epoch);
@@ -264,7 +262,7 @@ fn inertial_flight_path(object: &mut Object, has_epoch: bool) -> Option<State> {
         .doc("Planet-fixed longitude, east positive, within ±2π (±360°).")
         .angle(Bound::TURN);
     let geocentric_latitude = object
-        .field("geocentric_latitude", "Latitude, geocentric")
+        .field("geocentric_latitude", "Geocentric latitude")
         .doc("Latitude, north positive, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
     let inertial_speed = object
@@ -347,7 +345,7 @@ pub const FRAMES: Words<Frame> = Words {
     name: "Frame",
     doc: "Inertial frame.",
     words: &[
-        word("date", Frame::Date, "of date").doc(
+        word("date", Frame::Date, "Equator of date").doc(
             "The planet's equator, with the planet rotated from it by the sidereal time; with an epoch on the Earth, \
              the equator and the celestial intermediate origin of date.",
         ),

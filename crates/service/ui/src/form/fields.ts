@@ -90,23 +90,23 @@ const APART = [
 /** What an empty field shows. */
 const HINTS: Record<string, string> = {
   'SimulateRequest.epoch': '2026-11-26T12:00:00Z',
-  'Condition.event': 'its name',
-  'Effect.release': 'names of parachutes',
+  'Condition.event': 'event name',
+  'Effect.release': 'parachute names',
 };
 
 /** What the choice of a kind says where there is none. */
 const NONE: Record<string, string> = {
   'SimulateRequest.atmosphere': 'Exponential (default)',
-  'SimulateRequest.wind': 'Still air',
+  'SimulateRequest.wind': 'No wind',
   'Planet.gravity': 'Inverse square (default)',
-  'Effect.aerodynamics': 'as before',
+  'Effect.aerodynamics': 'Unchanged',
 };
 
 /** What switches on a group that may be left out. */
 const SWITCHES: Record<string, string> = {
-  'SimulateRequest.heating': 'Compute heat fluxes (the vehicle needs a nose radius)',
-  'Effect.delta_v': 'An impulse',
-  'Effect.deploy': 'A parachute',
+  'SimulateRequest.heating': 'Compute heat fluxes (requires a nose radius)',
+  'Effect.delta_v': 'Impulsive Δv',
+  'Effect.deploy': 'Deploy a parachute',
 };
 
 /** What an element of a list is called, and what it begins with. */

@@ -4,6 +4,7 @@ import type { ComponentChildren } from 'preact';
 import { useState } from 'preact/hooks';
 import { address, type Case, type State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
+import { capital } from '../figures';
 import { chapterOf } from '../guide';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
@@ -22,7 +23,7 @@ const FOLDS: [string, (keyof Case)[]][] = [
   ['Planet', ['planet']],
   ['Heating', ['heating']],
   ['Events', ['events']],
-  ['Stop', ['stop']],
+  ['Stop conditions', ['stop']],
   ['Solver and output', ['solver', 'sensitivities', 'verify', 'output', 'echo', 'angle_unit']],
 ];
 
@@ -45,7 +46,7 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
       <summary>
         <span>{title}</span>
         {faults.length > 0 ? (
-          <span class="badge bad">{faults.length === 1 ? '1 fault' : `${faults.length} faults`}</span>
+          <span class="badge bad">{faults.length === 1 ? '1 problem' : `${faults.length} problems`}</span>
         ) : (
           !isUsed && <span class="badge">default</span>
         )}
@@ -192,6 +193,11 @@ const angles = computed<Reading>(() => {
 
 const idOf = (path: Path) => `field${pointer(path)}`;
 
+/** The description of a field, without the marks of Markdown. */
+function helpOf(property: Property | undefined): string | undefined {
+  return property?.description?.replaceAll('`', '');
+}
+
 /** What every input has: its identity, and what is wrong with it. */
 function inputOf(path: Path, isWhole: boolean, property?: Property) {
   const faults = faultsOf(path, isWhole);
@@ -199,7 +205,7 @@ function inputOf(path: Path, isWhole: boolean, property?: Property) {
     id: idOf(path),
     isBad: faults.length > 0,
     describedBy: faults.length > 0 ? `${idOf(path)}-fault` : undefined,
-    help: property?.description,
+    help: helpOf(property),
   };
 }
 
@@ -224,7 +230,7 @@ interface LineProps {
 /** A label, an input and its unit. */
 function Line({ label, path, property, unit, children }: LineProps) {
   return (
-    <div class="line" title={property?.description}>
+    <div class="line" title={helpOf(property)}>
       {typeof label === 'string' ? <label for={idOf(path)}>{label}</label> : label}
       {children}
       <span class="unit">{unit}</span>
@@ -236,7 +242,7 @@ function Line({ label, path, property, unit, children }: LineProps) {
 /** A label above an input that takes the whole width. */
 function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
   return (
-    <div class="block" title={property?.description}>
+    <div class="block" title={helpOf(property)}>
       <label for={idOf(path)}>{label}</label>
       {children}
       <Faults path={path} isWhole />
@@ -331,7 +337,7 @@ function Words({
         else put(path, next);
       }}
     >
-      {value === undefined && !isDefault && <option value="">choose</option>}
+      {value === undefined && !isDefault && <option value="">Choose …</option>}
       {names.map((name) => (
         <option key={name} value={name}>
           {words[name]}
@@ -348,7 +354,7 @@ function select(path: Path) {
 
 function Vector({ label, unit, path, property }: { label: string; unit: string; path: Path; property?: Property | undefined }) {
   return (
-    <fieldset class="vector" title={property?.description}>
+    <fieldset class="vector" title={helpOf(property)}>
       <legend>
         {label}, {unit}
       </legend>
@@ -390,9 +396,9 @@ function Several({
     put(path, next.length > 0 ? next : undefined);
   };
   return (
-    <details class="several" title={property?.description}>
+    <details class="several" title={helpOf(property)}>
       <summary>
-        {label}: {chosen.length === 0 ? 'all' : chosen.length}
+        {label}: {chosen.length === 0 ? 'all' : `${chosen.length} selected`}
       </summary>
       {words.map((word) => (
         <label key={word} class="check">
@@ -504,7 +510,7 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
   const label = (
     <select
       class="choice"
-      aria-label={`${(fields[names[0] as string] as Field).label} or another`}
+      aria-label={names.map((other) => (fields[other] as Field).label).join(' or ')}
       value={name}
       onChange={(event) => change(event.currentTarget.value)}
     >
@@ -595,7 +601,7 @@ function Variant({ field, path, property }: VariantProps) {
     <div class="group">
       <Line label={path[0] === 'initial_state' ? 'Coordinates' : field.label} path={[...path, 'type']} property={property}>
         <select {...select([...path, 'type'])} value={type ?? ''} onChange={(event) => change(event.currentTarget.value)}>
-          {(field.none !== undefined || kind === undefined) && <option value="">{field.none ?? 'choose'}</option>}
+          {(field.none !== undefined || kind === undefined) && <option value="">{field.none ?? 'Choose …'}</option>}
           {Object.entries(field.kinds).map(([name, { label }]) => (
             <option key={name} value={name}>
               {label}
@@ -627,10 +633,10 @@ function Command({ label, path, property }: { label: string; path: Path; propert
     );
   return (
     <div class="group">
-      <div class="line" title={property?.description}>
+      <div class="line" title={helpOf(property)}>
         <label for={idOf(path)}>{label}</label>
         {isSchedule ? (
-          <span class="unit">by the schedule below</span>
+          <span class="unit">see schedule below</span>
         ) : (
           <Control field={{ kind: 'number', label, isAngle: true }} path={path} property={property} />
         )}
@@ -639,7 +645,7 @@ function Command({ label, path, property }: { label: string; path: Path; propert
       </div>
       <label class="check">
         <input type="checkbox" checked={isSchedule} onChange={(event) => toggle(event.currentTarget.checked)} />
-        {label} by a schedule
+        {label} schedule
       </label>
       {isSchedule && <Members fields={SCHEDULE.fields} schema={SCHEDULE.schema} path={path} />}
     </div>
@@ -664,7 +670,7 @@ function Convective({ label, path, property }: { label: string; path: Path; prop
               {title}
             </option>
           ))}
-          <option value="gas">Sutton and Graves, another gas</option>
+          <option value="gas">Sutton–Graves, other gas</option>
         </select>
       </Line>
       {isOfGas && <Members fields={SUTTON_GRAVES} schema="SuttonGraves" path={path} />}
@@ -682,9 +688,9 @@ function Thrust({ label, path, property }: { label: string; path: Path; property
     <div class="group">
       <Line label={label} path={path} property={property}>
         <select {...select(path)} value={state} onChange={(event) => change(event.currentTarget.value)}>
-          <option value="">as before</option>
-          <option value="on">switched on</option>
-          <option value="off">switched off</option>
+          <option value="">Unchanged</option>
+          <option value="on">On</option>
+          <option value="off">Off</option>
         </select>
       </Line>
       {state === 'on' && <Members fields={THRUST} schema="Thrust" path={path} />}
@@ -699,7 +705,7 @@ interface AlongProps {
   property?: Property | undefined;
 }
 
-/** One of several words, or a direction in inertial space. */
+/** One of several words, or Fixed inertial direction. */
 function Along({ label, words, path, property }: AlongProps) {
   const value = get(draft.value, path);
   const isInertial = typeof value === 'object' && value !== null;
@@ -713,16 +719,16 @@ function Along({ label, words, path, property }: AlongProps) {
           value={isInertial ? 'inertial' : String(value ?? '')}
           onChange={(event) => change(event.currentTarget.value)}
         >
-          {value === undefined && <option value="">choose</option>}
+          {value === undefined && <option value="">Choose …</option>}
           {Object.entries(words).map(([word, meaning]) => (
             <option key={word} value={word}>
               {meaning}
             </option>
           ))}
-          <option value="inertial">a direction in inertial space</option>
+          <option value="inertial">Fixed inertial direction</option>
         </select>
       </Line>
-      {isInertial && <Vector label="Direction" unit="inertial, of any length" path={[...path, 'direction']} />}
+      {isInertial && <Vector label="Inertial direction" unit="any length" path={[...path, 'direction']} />}
     </div>
   );
 }
@@ -743,7 +749,7 @@ function List({ field, path, isBare }: ListProps) {
         <div class="list-item" key={`${items.length}-${index}`}>
           <div class="list-head">
             <span>
-              {field.one} {index + 1}
+              {capital(field.one)} {index + 1}
             </span>
             <button
               type="button"
@@ -761,7 +767,7 @@ function List({ field, path, isBare }: ListProps) {
       ))}
       {items.length > most && (
         <button type="button" id={idOf(path)} onClick={() => setMost(most + SHOWN)}>
-          Show more: {items.length - most} of {items.length} are not shown
+          Show more ({items.length - most} of {items.length} hidden)
         </button>
       )}
       <button type="button" onClick={() => put(path, [...items, structuredClone(field.empty)])}>

@@ -15,8 +15,8 @@ const TOLD = 3;
 export function whyNoCase(value: unknown): string | null {
   if (!isObject(value)) return 'it is not a JSON object';
   const missing = ['vehicle', 'initial_state'].filter((name) => !isObject(get(value, [name])));
-  if (missing.length > 0) return `it has no ${missing.join(' and no ')}`;
-  if (isDeeper(value, DEEPEST)) return `it goes more than ${DEEPEST} levels deep`;
+  if (missing.length > 0) return `${missing.join(' and ')} ${missing.length > 1 ? 'are' : 'is'} missing`;
+  if (isDeeper(value, DEEPEST)) return `it is nested more than ${DEEPEST} levels deep`;
   if (new TextEncoder().encode(JSON.stringify(value)).length > LONGEST) return TOO_LONG;
   const faults = ofObject(value, ASKED, []);
   const others = faults.length > TOLD ? `, and ${faults.length - TOLD} more` : '';
@@ -24,7 +24,7 @@ export function whyNoCase(value: unknown): string | null {
 }
 
 /** Said of a case that has more bytes than it may have. */
-export const TOO_LONG = 'it is longer than 1 MiB';
+export const TOO_LONG = 'it exceeds 1 MiB';
 
 const SINGLE: Field = { kind: 'text', label: '' };
 const ROW: Field = { kind: 'column', label: '', table: '' };
@@ -86,7 +86,7 @@ function ofArray(value: unknown, item: Field, path: Path): string[] {
 }
 
 function ofSingle(value: unknown, path: Path): string[] {
-  if (typeof value === 'number' && !Number.isFinite(value)) return [`${pointer(path)} must be a number that an f64 can hold`];
+  if (typeof value === 'number' && !Number.isFinite(value)) return [`${pointer(path)} must be a finite number in double precision`];
   return typeof value === 'object' && value !== null ? [fault(path, 'a single value', value)] : [];
 }
 

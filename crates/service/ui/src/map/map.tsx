@@ -31,7 +31,7 @@ export default function Maps() {
             isClose.value = !isClose.value;
           }}
         >
-          Zoom to the track
+          Zoom to track
         </button>
         <Legend run={run} />
       </div>
@@ -189,7 +189,7 @@ function Globe() {
         ref={canvas}
         role="img"
         tabIndex={0}
-        aria-label={run ? `Globe with the track ${summaryOf(run)}; the arrow keys turn it` : 'Globe'}
+        aria-label={run ? `Globe with the track ${summaryOf(run)}; arrow keys rotate it` : 'Globe'}
         onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
         onPointerMove={(event) => {
           if (event.buttons === 0) return;
@@ -204,10 +204,10 @@ function Globe() {
         }}
       />
       <div class="globe-buttons">
-        <button type="button" aria-label="Nearer" onClick={() => scale(1.5)}>
+        <button type="button" aria-label="Zoom in" onClick={() => scale(1.5)}>
           +
         </button>
-        <button type="button" aria-label="Farther" onClick={() => scale(1 / 1.5)}>
+        <button type="button" aria-label="Zoom out" onClick={() => scale(1 / 1.5)}>
           −
         </button>
         <button
@@ -218,7 +218,7 @@ function Globe() {
             redraw.current();
           }}
         >
-          Centre
+          Reset view
         </button>
       </div>
     </div>
@@ -262,7 +262,7 @@ function Places({ run }: { run: Run }) {
               <button
                 type="button"
                 class="small"
-                aria-label={`Copy the place of ${mark.label}`}
+                aria-label={`Copy position of ${mark.label}`}
                 onClick={() => {
                   void copied(place).then(() => {
                     said.value = `Copied: ${place}`;

@@ -83,9 +83,9 @@ function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { r
   }
 }
 
-/** Marks that have a place of their own: not the peaks, but the highest point. */
+/** Marks that have a place of their own: not the peaks, but the maximum altitude. */
 export function isPlaced({ kind, label }: { kind: string; label: string }): boolean {
-  return kind !== 'peak' || label === 'highest point';
+  return kind !== 'peak' || label === 'maximum altitude';
 }
 
 /** Where a place is on the screen; null where it is on the far side. */

@@ -9,10 +9,10 @@ import { Plot } from './plot';
 import './plots.css';
 
 const LAYOUTS: Record<Layout, string> = {
-  thesis: 'as in the thesis',
-  time: 'against time',
-  altitude: 'against altitude',
-  speed: 'against speed',
+  thesis: 'Thesis layout',
+  time: 'Against time',
+  altitude: 'Against altitude',
+  speed: 'Against speed',
 };
 const ROWS = 50;
 
@@ -29,7 +29,7 @@ export function Plots() {
       <div class="plots-bar">
         <h2>Plots</h2>
         <select
-          aria-label="Layout of the plots"
+          aria-label="Plot layout"
           value={layout.value}
           onChange={(event) => {
             layout.value = event.currentTarget.value as Layout;
@@ -49,7 +49,7 @@ export function Plots() {
             event.currentTarget.value = '';
           }}
         >
-          <option value="">add a plot …</option>
+          <option value="">Add a plot …</option>
           {more.map((name) => (
             <option key={name} value={name}>
               {QUANTITIES[name].label}
@@ -104,7 +104,7 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
         <h3>{isLarge ? `${titleOf(axes.y, unit)}, against speed` : titleOf(axes.y, unit)}</h3>
         <Readings axes={axes} />
         {onRemove && (
-          <button type="button" class="small" onClick={onRemove} aria-label={`Remove the plot of ${QUANTITIES[axes.y].label}`}>
+          <button type="button" class="small" onClick={onRemove} aria-label={`Remove plot: ${QUANTITIES[axes.y].label}`}>
             ×
           </button>
         )}
@@ -151,7 +151,7 @@ function Instant({ flight }: { flight: Flight }) {
         max={1000}
         step={1}
         value={time === null || end === 0 ? 0 : Math.round((time / end) * 1000)}
-        aria-valuetext={time === null ? 'none' : `${number(time, 5)} s`}
+        aria-valuetext={time === null ? 'None' : `${number(time, 5)} s`}
         onInput={(event) => {
           cursor.value = (Number(event.currentTarget.value) / 1000) * end;
         }}
@@ -161,7 +161,7 @@ function Instant({ flight }: { flight: Flight }) {
       />
       <span class="quiet">
         {time === null || !run
-          ? 'point at a plot to read all of them; drag to zoom'
+          ? 'Point at a plot to read values; drag to zoom'
           : [
               `${reading(time)} s`,
               ...READ.map((name) => `${QUANTITIES[name].label} ${reading(valueAt(run, name, time, unit))} ${unitOf(name, unit)}`),

@@ -110,7 +110,7 @@ it('the table has the first and the last row of the flight', async () => {
 
 it('the coordinates of the impact can be copied', async () => {
   const { page } = await on('target_1');
-  await page.getByRole('button', { name: 'Copy the place of impact' }).click();
+  await page.getByRole('button', { name: 'Copy position of impact' }).click();
   await page.getByText(/^Copied: /).waitFor();
   const { final_state } = await ask(service.address, 'simulate', { ...example('target_1'), angle_unit: 'rad' });
   const degrees = (angle: number) => ((angle * 180) / Math.PI).toFixed(5);
@@ -122,7 +122,7 @@ it('the coordinates of the impact can be copied', async () => {
 it('the validation table says that every reference check passes', async () => {
   const { page } = await on('target_1');
   await page.getByRole('button', { name: 'Validation' }).click();
-  await page.getByText('Every reference check passes.').waitFor();
+  await page.getByText(/All \d+ reference checks pass\./).waitFor();
   expect(await page.getByRole('dialog').locator('tbody tr').count()).toBeGreaterThan(100);
   await page.keyboard.press('Escape');
   await expect.poll(() => page.getByRole('dialog').count()).toBe(0);

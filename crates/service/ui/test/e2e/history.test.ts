@@ -73,7 +73,7 @@ describe('undo', () => {
 
   it('takes back an example that was opened', async () => {
     const page = await on({ ...example('target_2'), name: 'mine' });
-    await openExample(page, 'A capsule comes down from orbit');
+    await openExample(page, 'Capsule from orbit');
     await page.getByRole('button', { name: 'Undo' }).click();
     await expect.poll(() => nameOf(page)).toBe('mine');
     await page.close();
@@ -83,19 +83,19 @@ describe('undo', () => {
 it('Back returns to the case before an example, a file or a new case, as it was left', async () => {
   const page = await on({ ...example('target_2'), name: 'mine' });
   await field(page, '/vehicle/mass').fill('750');
-  await openExample(page, 'A capsule comes down from orbit');
+  await openExample(page, 'Capsule from orbit');
   await openText(page, 'case.json', JSON.stringify({ ...example('target_1'), name: 'of a file' }));
   await expect.poll(() => nameOf(page)).toBe('of a file');
   await page.getByRole('button', { name: 'New', exact: true }).click();
   await expect.poll(() => nameOf(page)).toBe('New case');
   await expect.poll(async () => (await caseOf(page)).name).toBe('New case');
-  for (const name of ['of a file', 'A capsule comes down from orbit', 'mine']) {
+  for (const name of ['of a file', 'Capsule from orbit', 'mine']) {
     await page.goBack();
     await expect.poll(() => nameOf(page)).toBe(name);
   }
   await expect.poll(() => field(page, '/vehicle/mass').inputValue()).toBe('750');
   await page.goForward();
-  await expect.poll(() => nameOf(page)).toBe('A capsule comes down from orbit');
+  await expect.poll(() => nameOf(page)).toBe('Capsule from orbit');
   await page.close();
 });
 
@@ -110,9 +110,9 @@ it('a new case has standard air and degrees, flies to the ground, and gets no wa
 });
 
 it.each([
-  ['track.geojson', '{"type": "FeatureCollection", "features": []}', 'it has no vehicle and no initial_state'],
+  ['track.geojson', '{"type": "FeatureCollection", "features": []}', 'vehicle and initial_state are missing'],
   ['list.json', '[1, 2]', 'it is not a JSON object'],
-  ['text.json', 'altitude,speed', 'is not a case'],
+  ['text.json', 'altitude,speed', 'is not a valid case'],
 ])('%s, which is no case, replaces nothing', async (name, text, why) => {
   const page = await on(example('target_2'));
   const before = await caseOf(page);
@@ -137,11 +137,11 @@ it('tables are there again where another kind was chosen and then theirs', async
   expect(await field(page, '/vehicle/aerodynamics/drag_coefficient').inputValue()).toBe('1.3');
   // A schedule, and a part that may be left out, too.
   await aerodynamics.selectOption('alpha_mach_table');
-  await page.getByLabel('Bank angle by a schedule').uncheck();
-  await page.getByLabel('Bank angle by a schedule').check();
+  await page.getByLabel('Bank angle schedule').uncheck();
+  await page.getByLabel('Bank angle schedule').check();
   await expect.poll(() => caseOf(page)).toEqual(tree);
   // But nothing of it comes into another case.
-  await openExample(page, 'A capsule comes down from orbit');
+  await openExample(page, 'Capsule from orbit');
   await aerodynamics.selectOption('alpha_mach_table');
   await expect.poll(async () => (await caseOf(page)).vehicle.aerodynamics).toEqual({ type: 'alpha_mach_table' });
   await page.close();
@@ -150,8 +150,8 @@ it('tables are there again where another kind was chosen and then theirs', async
 it('the cases that were worked on are there on the next visit, and examples that were only looked at are not', async () => {
   const page = await on({ ...example('target_2'), name: 'mine' });
   await field(page, '/vehicle/mass').fill('750');
-  await openExample(page, 'A capsule comes down from orbit');
-  await openExample(page, 'A lifting capsule comes home');
+  await openExample(page, 'Capsule from orbit');
+  await openExample(page, 'Lifting capsule');
   const next = await page.context().newPage();
   await next.goto(service.address);
   await next.locator('[data-figure="Time"]').waitFor();
@@ -187,7 +187,7 @@ describe('units of angles are the reader’s', () => {
     const page = await on(tree);
     expect(await page.getByRole('button', { name: 'deg', exact: true }).getAttribute('aria-pressed')).toBe('true');
     expect(Number(await field(page, angle).inputValue())).toBeCloseTo(-30, 4);
-    expect(await page.getByText('Flight-path angle at the end').locator('..').textContent()).toContain('°');
+    expect(await page.getByText('Final flight-path angle').locator('..').textContent()).toContain('°');
     expect(await page.locator('.slider', { hasText: 'Flight-path angle' }).textContent()).toContain('−30 °');
     await field(page, '/control/bank_angle').fill('60');
     await expect.poll(async () => (await caseOf(page)).control?.bank_angle).toBe((60 * Math.PI) / 180);
@@ -200,9 +200,9 @@ describe('units of angles are the reader’s', () => {
   it('are the same after an example in the other unit, and on the next visit', async () => {
     const page = await on(example('target_2'));
     await page.getByRole('button', { name: 'rad', exact: true }).click();
-    await openExample(page, 'A capsule comes down from orbit');
+    await openExample(page, 'Capsule from orbit');
     expect(Number(await field(page, '/control/bank_angle').inputValue())).toBeCloseTo(Math.PI / 3, 12);
-    expect(await page.locator('[data-figure="Place"]').textContent()).toContain('rad');
+    expect(await page.locator('[data-figure="Final position"]').textContent()).toContain('rad');
     await expect.poll(async () => (await caseOf(page)).control?.bank_angle).toBe(60);
     await page.reload();
     expect(await page.getByRole('button', { name: 'rad', exact: true }).getAttribute('aria-pressed')).toBe('true');

@@ -132,9 +132,9 @@ it('a quantity whose plot is added is asked for, and is in flights that were pin
 });
 
 it.each([
-  ['is busy', { status: 503, headers: { 'retry-after': '1' } }, 'The service is busy'],
-  ['is asked too often', { status: 429, headers: { 'retry-after': '1' } }, 'The service is busy'],
-  ['is away for a moment', { status: 502 }, 'The service does not answer'],
+  ['is busy', { status: 503, headers: { 'retry-after': '1' } }, 'Service busy'],
+  ['is asked too often', { status: 429, headers: { 'retry-after': '1' } }, 'Service busy'],
+  ['is away for a moment', { status: 502 }, 'Service not responding'],
 ])('where the service %s the last flight stays, and the next comes by itself', async (_, refusal, told) => {
   const page = await on('target_2');
   const before = await figure(page, 'Time');

@@ -87,8 +87,8 @@ it('a case says what to know of it: the flown capsules come down in Utah', async
   ] as const) {
     await page.getByLabel('Open', { exact: true }).selectOption({ label: title });
     await page.getByRole('heading', { name: title }).waitFor();
-    expect(await page.locator('.notes').textContent()).toContain(`some ${south} south of where it was found`);
-    const [latitude, longitude] = (await figure(page, 'Place')).split(', ').map(Number.parseFloat);
+    expect(await page.locator('.notes').textContent()).toContain(`${south} south of the actual landing point`);
+    const [latitude, longitude] = (await figure(page, 'Final position')).split(', ').map(Number.parseFloat);
     expect(latitude).toBeCloseTo(39, 0);
     expect(longitude).toBeGreaterThan(-113.6);
     expect(longitude).toBeLessThan(-113.3);
@@ -162,10 +162,10 @@ describe('a form', () => {
     const { page } = await on(CAPSULE);
     await page.route('**/simulate', (route) => route.abort());
     await page.locator('#field\\/vehicle\\/mass').fill('6000');
-    await page.getByText('The service does not answer. Is it running?').waitFor();
+    await page.getByText('The service does not respond. Check that it is running.').waitFor();
     await page.unroute('**/simulate');
     await page.locator('#field\\/vehicle\\/mass').fill('6001');
-    await expect.poll(() => page.getByText('The service does not answer. Is it running?').count()).toBe(0);
+    await expect.poll(() => page.getByText('The service does not respond. Check that it is running.').count()).toBe(0);
     await page.close();
   });
 
@@ -192,7 +192,7 @@ describe('a form', () => {
     await page.locator('[data-figure="Heat load"]').waitFor();
     await page.locator('summary', { hasText: 'Stop' }).click();
     await page.getByRole('button', { name: 'Add a condition' }).click();
-    await page.getByLabel('falls through or another').last().selectOption('rises_through');
+    await page.getByLabel('Falls below or Rises above').last().selectOption('rises_through');
     await page.locator('#field\\/stop\\/when\\/0\\/rises_through').fill('2');
     await expect.poll(() => figure(page, 'Peak load factor')).toBe('2');
     await page.close();
@@ -274,7 +274,7 @@ it('a theory says where it holds, as the API does', async () => {
   const { page } = await on(tree);
   const answer = await ask(service.address, 'analytic', tree);
   await page.getByText(answer.valid.ends_because).waitFor();
-  const choose = page.getByLabel('beside the flight');
+  const choose = page.getByLabel('Overlay');
   expect(await choose.inputValue()).toBe('steep_ballistic');
   await choose.selectOption('loh');
   const refusal = await ask(service.address, 'analytic', { ...tree, solution: 'loh' });
@@ -313,7 +313,7 @@ describe.each([
   ['a desk, light', { viewport: { width: 1440, height: 1000 }, colorScheme: 'light' }],
 ] as const)('on %s', (_, options) => {
   it('nothing is wider than the screen, and axe finds nothing serious', async () => {
-    const { page } = await on(example('deorbit'), options);
+    const { page } = await on({ ...example('deorbit'), name: 'Capsule from orbit' }, options);
     await page.waitForLoadState('networkidle');
     const views = options.viewport.width < 900 ? ['Case', 'Flight'] : [''];
     for (const view of views) {

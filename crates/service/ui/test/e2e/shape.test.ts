@@ -16,8 +16,8 @@ const fragmentOf = (text: string) => `#case=${deflateRawSync(text).toString('bas
 
 /** What no form can show, and what the page says of it. */
 const STRANGE: [string, () => string, string][] = [
-  ['60 MB of spaces', () => ' '.repeat(60e6), 'it is longer than 1 MiB'],
-  ['a name of 60 MB', () => like({ name: 'x'.repeat(60e6) }), 'it is longer than 1 MiB'],
+  ['60 MB of spaces', () => ' '.repeat(60e6), 'it exceeds 1 MiB'],
+  ['a name of 60 MB', () => like({ name: 'x'.repeat(60e6) }), 'it exceeds 1 MiB'],
   ['events that are a text', () => like({ events: 'text' }), '/events must be an array, got a string'],
   ['10 000 arrays in each other', () => like({ events: 'HERE' }).replace('"HERE"', '['.repeat(1e4) + ']'.repeat(1e4)), '32 levels deep'],
   ['a type that is an object', () => like({ atmosphere: { type: { toString: 5 } } }), '/atmosphere/type must be a single value'],
@@ -41,7 +41,7 @@ describe.each(STRANGE)('%s', (_, textOf, why) => {
   it('in a link is told, and the page begins with an example', async () => {
     const fragment = fragmentOf(textOf());
     const opened = await open(browser, `${service.address}/${fragment}`);
-    await opened.page.getByText('The case of this link cannot be opened').filter({ hasText: why }).waitFor();
+    await opened.page.getByText('Cannot open the case in this link').filter({ hasText: why }).waitFor();
     await expect.poll(() => new URL(opened.page.url()).hash, WITHIN).not.toBe(fragment);
     await flies(opened);
     await opened.page.close();
@@ -59,7 +59,7 @@ describe.each(STRANGE)('%s', (_, textOf, why) => {
     await page.getByRole('button', { name: 'Dismiss' }).click();
     const buffer = Buffer.from(textOf().slice(0, 2e6));
     await page.locator('#file').setInputFiles({ name: 'case.json', mimeType: 'application/json', buffer });
-    await page.getByText('case.json is not a case').waitFor();
+    await page.getByText('case.json is not a valid case').waitFor();
     expect(await page.locator('#field\\/vehicle\\/mass').inputValue()).toBe('700');
     await flies(opened);
     await page.close();

@@ -1,6 +1,17 @@
 import { describe, expect, it } from 'vitest';
 import type { Answer } from '../../src/api';
-import { columnOf, difference, endsApart, figuresOf, kilometres, number, placeOf, reading } from '../../src/figures';
+import {
+  columnOf,
+  difference,
+  endsApart,
+  figuresOf,
+  kilometres,
+  modelsInWords,
+  number,
+  placeOf,
+  reading,
+  withPlanetsInWords,
+} from '../../src/figures';
 import { at, flightOf, indexBefore } from '../../src/flight';
 
 const peak = (value: number) => ({ value, time: 50, altitude: 40_000 });
@@ -69,9 +80,9 @@ describe('a flight', () => {
     expect(flight.marks.map(({ kind, label, time }) => [kind, label, time])).toEqual([
       ['start', 'start', 0],
       ['event', 'event 2', 60],
-      ['peak', 'greatest load', 50],
-      ['peak', 'greatest dynamic pressure', 50],
-      ['peak', 'greatest heat flux', 50],
+      ['peak', 'peak load factor', 50],
+      ['peak', 'peak dynamic pressure', 50],
+      ['peak', 'peak heat flux', 50],
       ['end', 'impact', 100],
     ]);
   });
@@ -94,7 +105,7 @@ describe('a flight', () => {
         phase({ index: 0, name: 'burn', burnout: true }, 0.1),
         phase({ index: 1, name: 'main parachute' }, 6.8756),
       ]),
-    ).toBe('4.04 g at first · 6.88 g after main parachute');
+    ).toBe('4.04 g before the first event · 6.88 g after main parachute');
     expect(parts([phase({ index: 2, burnout: true }, 4), phase({ index: 2 }, 6.9)])).toBe(
       '4 g after burnout of event 3 · 6.9 g after event 3',
     );
@@ -111,10 +122,20 @@ describe('a flight', () => {
     expect(figuresOf(flightOf(stopped), 'deg')[0]).toMatchObject({ label: 'Time', note: 'Stopped at 8 km' });
   });
 
+  it('ends at an instant in UTC where its case has an epoch', () => {
+    const final_state = { ...ANSWER.final_state, utc: '2006-01-15T10:10:33.123456Z' };
+    expect(figuresOf(flightOf({ ...ANSWER, final_state }), 'deg')[0]).toMatchObject({ note: 'Impact, 2006-01-15 10:10:33 UTC' });
+    expect(figuresOf(flight, 'deg')[0]).toMatchObject({ note: 'Impact' });
+  });
+
+  it('that only descends is highest at the start', () => {
+    expect(figuresOf(flight, 'deg').find(({ label }) => label === 'Maximum altitude')).toMatchObject({ value: 100, note: 'at the start' });
+  });
+
   it('has figures in the unit of angles', () => {
     const figure = (unit: 'rad' | 'deg', label: string) => figuresOf(flight, unit).find((candidate) => candidate.label === label);
-    expect(figure('deg', 'Flight-path angle at the end')).toMatchObject({ unit: '°', value: expect.closeTo(-90, 10) });
-    expect(figure('rad', 'Flight-path angle at the end')).toMatchObject({ unit: 'rad', value: expect.closeTo(-Math.PI / 2, 12) });
+    expect(figure('deg', 'Final flight-path angle')).toMatchObject({ unit: '°', value: expect.closeTo(-90, 10) });
+    expect(figure('rad', 'Final flight-path angle')).toMatchObject({ unit: 'rad', value: expect.closeTo(-Math.PI / 2, 12) });
     expect(figure('rad', 'Peak heat flux')).toMatchObject({ unit: 'kW/m²', value: 1500, note: '40 km, 50 s' });
     expect(figure('rad', 'Peak Mach number')).toBeUndefined();
     expect(placeOf(flight.final, 'deg')).toBe('28.64789°, -177.61692°');
@@ -126,6 +147,21 @@ describe('a flight', () => {
     expect(endsApart(flight, other)).toBeCloseTo(640, 9);
     expect(endsApart(flight, flight)).toBe(0);
   });
+});
+
+it('models are told in words', () => {
+  const models = {
+    planet: 'earth_wgs84',
+    shape: 'ellipsoid',
+    atmosphere: 'us76',
+    gravity: 'zonal',
+    aerodynamics: 'constant',
+    wind: 'still',
+  };
+  expect(modelsInWords(models as Answer['models'])).toBe('WGS 84 ellipsoid, U.S. Standard Atmosphere 1976, zonal gravity');
+  const thesis = { ...models, planet: 'earth_jameson_listing', shape: 'sphere', atmosphere: 'exponential', gravity: 'inverse_square' };
+  expect(modelsInWords(thesis as Answer['models'])).toBe('Earth sphere (thesis listing), exponential atmosphere, inverse-square gravity');
+  expect(withPlanetsInWords('place of impact, earth_jameson_text')).toBe('place of impact, thesis text');
 });
 
 it.each([

@@ -34,7 +34,7 @@ it('what is in a link is a case', async () => {
 });
 
 it('a link is no longer than a case may be', async () => {
-  await expect(fromFragment(`#case=${'A'.repeat(3 << 19)}`)).rejects.toThrow('it is longer than 1 MiB');
+  await expect(fromFragment(`#case=${'A'.repeat(3 << 19)}`)).rejects.toThrow('it exceeds 1 MiB');
   // What cannot be deflated, up to the limit.
   const name = randomBytes(780_000).toString('base64url');
   const tree = { name, vehicle: {}, initial_state: {} } as unknown as Case;
@@ -57,7 +57,7 @@ it('of a link that inflates without bound a little is read', async () => {
   vi.stubGlobal('DecompressionStream', counted);
   const fragment = fragmentOf(' '.repeat(60e6));
   expect(fragment.length).toBeLessThan(80_000);
-  await expect(fromFragment(fragment)).rejects.toThrow('it is longer than 1 MiB');
+  await expect(fromFragment(fragment)).rejects.toThrow('it exceeds 1 MiB');
   vi.unstubAllGlobals();
   expect(inflated).toBeGreaterThan(1 << 20);
   expect(inflated).toBeLessThan(4 << 20);

@@ -86,21 +86,21 @@ const deep = (levels: number): unknown => JSON.parse('['.repeat(levels) + ']'.re
 it.each([
   [[], 'it is not a JSON object'],
   [null, 'it is not a JSON object'],
-  [{ type: 'FeatureCollection', features: [] }, 'it has no vehicle and no initial_state'],
-  [{ vehicle: {} }, 'it has no initial_state'],
-  [{ vehicle: null, initial_state: 'x' }, 'it has no vehicle and no initial_state'],
+  [{ type: 'FeatureCollection', features: [] }, 'vehicle and initial_state are missing'],
+  [{ vehicle: {} }, 'initial_state is missing'],
+  [{ vehicle: null, initial_state: 'x' }, 'vehicle and initial_state are missing'],
   [{ ...SOUND, events: 'x' }, '/events must be an array, got a string'],
   [{ ...SOUND, atmosphere: null, stop: [] }, '/atmosphere must be an object, got null, /stop must be an object, got an array'],
   [{ ...SOUND, events: [5, 5, 5, 5, 5] }, expect.stringMatching(/^\/events\/0 must be an object, got a number, .*, and 2 more$/)],
   [{ ...SOUND, name: {} }, '/name must be a single value, got an object'],
   [{ ...SOUND, control: { bank_angle: [1] } }, '/control/bank_angle must be an object, got an array'],
   [{ ...SOUND, solution: [] }, '/solution must be a single value, got an array'],
-  [{ ...SOUND, vehicle: { mass: JSON.parse('1e999') } }, '/vehicle/mass must be a number that an f64 can hold'],
+  [{ ...SOUND, vehicle: { mass: JSON.parse('1e999') } }, '/vehicle/mass must be a finite number in double precision'],
   [{ ...SOUND, atmosphere: { type: { toString: 5 } } }, '/atmosphere/type must be a single value, got an object'],
   [{ ...SOUND, more: deep(31) }, null],
-  [{ ...SOUND, more: deep(32) }, 'it goes more than 32 levels deep'],
-  [{ ...SOUND, events: deep(10_000) }, 'it goes more than 32 levels deep'],
-  [{ ...SOUND, name: 'x'.repeat(1 << 20) }, 'it is longer than 1 MiB'],
+  [{ ...SOUND, more: deep(32) }, 'it is nested more than 32 levels deep'],
+  [{ ...SOUND, events: deep(10_000) }, 'it is nested more than 32 levels deep'],
+  [{ ...SOUND, name: 'x'.repeat(1 << 20) }, 'it exceeds 1 MiB'],
 ])('%#: a value is no case, or is one', (value, why) => {
   expect(whyNoCase(value)).toEqual(why);
 });
