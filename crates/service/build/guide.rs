@@ -147,101 +147,111 @@ fn parser(source: &str) -> Parser<'_> {
 
 /// The sections of a chapter.
 fn sections(source: &str) -> Result<Vec<Section>, String> {
-    let mut sections: Vec<Section> = Vec::new();
-    let mut events: Vec<Event> = Vec::new();
-    let mut ids = HashSet::new();
-    // The heading that is open: where it began, its rank, its id.
-    let mut heading: Option<(usize, HeadingLevel, Option<String>)> = None;
-    let mut words = String::new();
-    let finish = |sections: &mut Vec<Section>, events: &mut Vec<Event>| {
-        if let Some(section) = sections.last_mut() {
-            html::push_html(&mut section.html, mem::take(events).into_iter());
-        }
-    };
+    let mut renderer = Renderer::default();
     for event in parser(source) {
-        match &event {
-            Event::Text(text) | Event::Code(text) | Event::InlineMath(text) | Event::DisplayMath(text) => words += text,
-            Event::SoftBreak | Event::HardBreak => words.push(' '),
-            Event::End(TagEnd::TableCell) => words.push(' '),
-            Event::End(TagEnd::Item | TagEnd::TableRow | TagEnd::TableHead | TagEnd::CodeBlock) => words.push('\n'),
-            Event::End(TagEnd::Paragraph | TagEnd::List(_)) => words += "\n\n",
+        renderer.note_words(&event);
+        renderer.take(event)?;
+    }
+    renderer.finish_section();
+    Ok(renderer.sections)
+}
+
+/// What is known of a chapter while its events come.
+#[derive(Default)]
+struct Renderer<'a> {
+    sections: Vec<Section>,
+    /// Those of the section that is open, not yet written.
+    events: Vec<Event<'a>>,
+    /// The text of the section that is open.
+    words: String,
+    /// The heading that is open, if one is: where its events and its words begin, and its id.
+    heading: Option<(usize, usize, Option<String>)>,
+    ids: HashSet<String>,
+}
+
+impl<'a> Renderer<'a> {
+    /// Notes the text of an event.
+    fn note_words(&mut self, event: &Event) {
+        match event {
+            Event::Text(text) | Event::Code(text) | Event::InlineMath(text) | Event::DisplayMath(text) => {
+                self.words += text;
+            }
+            Event::SoftBreak | Event::HardBreak | Event::End(TagEnd::TableCell) => self.words.push(' '),
+            Event::End(TagEnd::Item | TagEnd::TableRow | TagEnd::TableHead | TagEnd::CodeBlock) => {
+                self.words.push('\n');
+            }
+            Event::End(TagEnd::Paragraph | TagEnd::List(_)) => self.words += "\n\n",
             _ => {}
         }
+    }
+
+    fn take(&mut self, event: Event<'a>) -> Result<(), String> {
         match event {
             Event::Start(Tag::Heading { level, id, .. }) => {
                 if level <= HeadingLevel::H2 {
-                    if let Some(section) = sections.last_mut() {
-                        section.text = mem::take(&mut words);
-                    }
-                    finish(&mut sections, &mut events);
-                    sections.push(Section::default());
+                    self.finish_section();
+                    self.sections.push(Section::default());
                 }
-                heading = Some((words.len(), level, id.map(|id| id.to_string())));
-                events.push(Event::Text("".into()));
+                self.heading = Some((self.events.len(), self.words.len(), id.map(|id| id.to_string())));
             }
-            Event::End(TagEnd::Heading(level)) => {
-                let (from, _, id) = heading.take().unwrap_or((0, level, None));
-                let text = words[from..].to_owned();
-                let id = id.unwrap_or_else(|| slug(&text));
-                if !ids.insert(id.clone()) {
-                    return Err(format!("there are two headings {id}"));
-                }
-                let inner = mem::take(&mut events);
-                let (before, inner) = split_at_heading(inner);
-                events = before;
-                let mut written = String::new();
-                html::push_html(&mut written, inner.into_iter());
-                let tag = format!(
-                    "<{level} id=\"{id}\">{written}<a class=\"here\" href=\"#{id}\" aria-label=\"Link to this section\">#</a></{level}>\n"
-                );
-                events.push(Event::Html(tag.into()));
-                if level <= HeadingLevel::H2
-                    && let Some(section) = sections.last_mut()
-                {
-                    (section.id, section.heading) = (id, text);
-                    words.clear();
-                } else {
-                    words.push('\n');
-                }
-            }
+            Event::End(TagEnd::Heading(level)) => self.finish_heading(level)?,
             Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
-                events.push(Event::Start(Tag::Link { link_type, dest_url: resolved(&dest_url), title, id }));
+                self.events.push(Event::Start(Tag::Link { link_type, dest_url: resolved(&dest_url), title, id }));
             }
-            Event::InlineMath(formula) => events.push(Event::InlineHtml(mathml(&formula, DisplayMode::Inline)?)),
-            Event::DisplayMath(formula) => events.push(Event::InlineHtml(mathml(&formula, DisplayMode::Block)?)),
+            Event::InlineMath(formula) => self.events.push(Event::InlineHtml(mathml(&formula, DisplayMode::Inline)?)),
+            Event::DisplayMath(formula) => self.events.push(Event::InlineHtml(mathml(&formula, DisplayMode::Block)?)),
             // What may be wider than the page scrolls by itself, by the keyboard too.
             Event::Start(Tag::CodeBlock(kind)) => {
-                let language =
-                    if let CodeBlockKind::Fenced(info) = &kind { info.split(' ').next().unwrap_or("") } else { "" };
-                events.push(Event::Html(format!("<pre tabindex=\"0\"><code class=\"language-{language}\">").into()));
+                let info = if let CodeBlockKind::Fenced(info) = &kind { info } else { "" };
+                let language = info.split(' ').next().unwrap_or_default();
+                self.push_html(format!("<pre tabindex=\"0\"><code class=\"language-{language}\">"));
             }
-            Event::End(TagEnd::CodeBlock) => events.push(Event::Html("</code></pre>\n".into())),
-            Event::Start(Tag::Table(alignments)) => {
-                events.push(Event::Html(
-                    "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\">".into(),
-                ));
-                events.push(Event::Start(Tag::Table(alignments)));
+            Event::End(TagEnd::CodeBlock) => self.push_html("</code></pre>\n".to_owned()),
+            Event::Start(Tag::Table(_)) => {
+                self.push_html("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\">".to_owned());
+                self.events.push(event);
             }
             Event::End(TagEnd::Table) => {
-                events.push(event);
-                events.push(Event::Html("</div>\n".into()));
+                self.events.push(event);
+                self.push_html("</div>\n".to_owned());
             }
             Event::Html(_) | Event::InlineHtml(_) => return Err("HTML is not for the guide".to_owned()),
-            event => events.push(event),
+            event => self.events.push(event),
+        }
+        Ok(())
+    }
+
+    fn push_html(&mut self, html: String) {
+        self.events.push(Event::Html(html.into()));
+    }
+
+    /// Writes a heading with its id and a link to itself.
+    fn finish_heading(&mut self, level: HeadingLevel) -> Result<(), String> {
+        let (of_events, of_words, id) = self.heading.take().unwrap_or_default();
+        let text = self.words.split_off(of_words);
+        let id = id.unwrap_or_else(|| slug(&text));
+        if !self.ids.insert(id.clone()) {
+            return Err(format!("there are two headings {id}"));
+        }
+        let mut inner = String::new();
+        html::push_html(&mut inner, self.events.split_off(of_events).into_iter());
+        let here = format!("<a class=\"here\" href=\"#{id}\" aria-label=\"Link to this section\">#</a>");
+        self.push_html(format!("<{level} id=\"{id}\">{inner}{here}</{level}>\n"));
+        match self.sections.last_mut() {
+            Some(section) if level <= HeadingLevel::H2 => (section.id, section.heading) = (id, text),
+            _ => self.words.extend([text.as_str(), "\n"]),
+        }
+        Ok(())
+    }
+
+    /// Writes the section that is open.
+    fn finish_section(&mut self) {
+        let (events, words) = (mem::take(&mut self.events), mem::take(&mut self.words));
+        if let Some(section) = self.sections.last_mut() {
+            section.text = words;
+            html::push_html(&mut section.html, events.into_iter());
         }
     }
-    if let Some(section) = sections.last_mut() {
-        section.text = words;
-    }
-    finish(&mut sections, &mut events);
-    Ok(sections)
-}
-
-/// The events before the heading that is open, which begins with an empty text, and those in it.
-fn split_at_heading(mut events: Vec<Event>) -> (Vec<Event>, Vec<Event>) {
-    let at = events.iter().rposition(|event| matches!(event, Event::Text(text) if text.is_empty())).unwrap_or(0);
-    let inner = events.split_off(at);
-    (events, inner)
 }
 
 /// A link to another chapter, or to another page of the service, from a page one folder below the root.
@@ -262,7 +272,7 @@ fn slug(heading: &str) -> String {
     words.map(str::to_lowercase).collect::<Vec<_>>().join("-")
 }
 
-/// A formula of LaTeX in MathML.
+/// A formula of LaTeX in `MathML`.
 fn mathml<'a>(formula: &str, display_mode: DisplayMode) -> Result<CowStr<'a>, String> {
     let storage = pulldown_latex::Storage::new();
     if let Some(error) = pulldown_latex::Parser::new(formula, &storage).find_map(Result::err) {
