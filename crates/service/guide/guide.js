@@ -58,7 +58,8 @@ async function search() {
     item.append(link, excerpt);
     return item;
   });
-  if (items.length === 0) items.push(Object.assign(document.createElement('li'), { textContent: 'Nothing found. Try one word, or look into the glossary.' }));
+  if (items.length === 0)
+    items.push(Object.assign(document.createElement('li'), { textContent: 'Nothing found. Try one word, or look into the glossary.' }));
   found.replaceChildren(...items);
 }
 
