@@ -15,13 +15,20 @@ const found = document.getElementById('found');
 const MOST_FOUND = 20;
 let sections;
 
-/** Sections that have every word, those with a word in their heading first. */
+/** In small letters, with a blank for each mark inside a word, so that delta-v, delta_v and Delta V are the same; of the same length. */
+function plain(text) {
+  return ` ${text.toLowerCase().replaceAll(/[-_‐–‘’“”"'`(/]/g, ' ')}`;
+}
+
+/** Sections that have a word that begins with every given one, those with all in a row or in their heading first. */
 function matches(words) {
   const scored = sections.map((section) => {
-    const heading = `${section.chapter} ${section.heading}`.toLowerCase();
-    const text = section.text.toLowerCase();
-    const scores = words.map((word) => (heading.includes(word) ? 10 : text.includes(word) ? 1 : -Infinity));
-    return { section, score: scores.reduce((sum, score) => sum + score, 0) };
+    const heading = plain(`${section.chapter} ${section.heading}`);
+    const text = plain(section.text);
+    const scores = words.map((word) => (heading.includes(` ${word}`) ? 10 : text.includes(` ${word}`) ? 1 : -Infinity));
+    const phrase = ` ${words.join(' ')}`;
+    const together = heading.includes(phrase) ? 20 : text.includes(phrase) ? 5 : 0;
+    return { section, score: scores.reduce((sum, score) => sum + score, together) };
   });
   return scored
     .filter(({ score }) => score > 0)
@@ -31,13 +38,14 @@ function matches(words) {
 
 /** The words around the first one that was found. */
 function around(text, words) {
-  const at = Math.max(0, Math.min(...words.map((word) => text.toLowerCase().indexOf(word)).filter((place) => place >= 0)));
+  const places = words.map((word) => plain(text).indexOf(` ${word}`)).filter((place) => place >= 0);
+  const at = Math.max(0, Math.min(...places));
   const from = Number.isFinite(at) ? Math.max(0, text.lastIndexOf(' ', at - 40)) : 0;
   return `${from > 0 ? '… ' : ''}${text.slice(from, from + 140).trim()} …`;
 }
 
 async function search() {
-  const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
+  const words = plain(input.value).split(/\s+/).filter(Boolean);
   sections ??= await (await fetch(new URL('search.json', import.meta.url))).json();
   found.hidden = words.length === 0;
   const items = matches(words).map(({ section }) => {
@@ -50,7 +58,8 @@ async function search() {
     item.append(link, excerpt);
     return item;
   });
-  if (items.length === 0) items.push(Object.assign(document.createElement('li'), { textContent: 'Nothing found.' }));
+  if (items.length === 0)
+    items.push(Object.assign(document.createElement('li'), { textContent: 'Nothing found. Try one word, or look into the glossary.' }));
   found.replaceChildren(...items);
 }
 
@@ -86,5 +95,18 @@ for (const block of document.querySelectorAll('pre')) {
 }
 
 for (const link of document.querySelectorAll('.chapters a')) {
-  if (link.pathname === location.pathname) link.setAttribute('aria-current', 'page');
+  if (link.pathname !== location.pathname) continue;
+  link.setAttribute('aria-current', 'page');
+  // The sections of a long chapter, below its name.
+  const headings = [...document.querySelectorAll('main h2')];
+  if (headings.length < 3) continue;
+  const list = document.createElement('ul');
+  for (const heading of headings) {
+    const section = Object.assign(document.createElement('a'), { href: `#${heading.id}` });
+    section.textContent = heading.textContent.replace(/#$/, '');
+    const item = document.createElement('li');
+    item.append(section);
+    list.append(item);
+  }
+  link.after(list);
 }

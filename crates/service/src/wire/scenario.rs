@@ -173,48 +173,13 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         )
         .default(false)
         .boolean();
-    let sensitivities = asked(object);
-    let dispersions = object
-        .field("dispersions", "Dispersions")
-        .doc(
-            "Uncertain numbers of the case. The response then contains the linear `covariance` of the end of the \
-             flight. Not supported for CSV and map formats.",
-        )
-        .optional()
-        .objects([0, MOST_VARIED], dispersion);
-    let verify = object
-        .field("verify", "Accuracy check")
-        .doc(
-            "Whether the response reports the numerical accuracy of the flight, as `verification`. It takes the \
-             computing time of about two flights. Not supported for CSV and map formats.",
-        )
-        .default(false)
-        .boolean();
+    let (sensitivities, dispersions, verify) = analyses(object);
     let epoch = epoch(
         object,
         "Time of t = 0 in RFC 3339 format. On the Earth it defines the angle between the inertial and the \
          planet-fixed frame, unless the state gives that angle. On a custom planet it only dates the flight.",
     );
-    let planet =
-        object.field("planet", "Planet").doc("Planet: shape, gravity and rotation.").default(json!({})).object(planet);
-    let atmosphere = object
-        .field("atmosphere", "Atmosphere")
-        .doc(
-            "Atmosphere model. The default is the exponential atmosphere of the thesis, with the warning \
-             `thesis_atmosphere`; use `us76` for new cases on the Earth.",
-        )
-        .default(json!({"type": "exponential"}))
-        .object(atmosphere);
-    let density_factor = object
-        .field("density_factor", "Density factor")
-        .doc("Factor on the density of the atmosphere model; 1.2 means 20 % denser air.")
-        .default(1.0)
-        .number(Bound::NON_NEGATIVE);
-    let wind = object
-        .field("wind", "Wind")
-        .doc("Velocity of the air relative to the rotating planet. Without it, the air rotates with the planet.")
-        .optional()
-        .object(wind);
+    let (planet, atmosphere, density_factor, wind) = environment(object);
     let vehicle = object
         .field("vehicle", "Vehicle")
         .doc("Vehicle: mass, reference area, aerodynamics and nose radius.")
@@ -276,6 +241,53 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         solver: solver?,
         assumed,
     })
+}
+
+/// What is asked beyond the flight: sensitivities, dispersions, and its accuracy.
+fn analyses(object: &mut Object) -> (Option<RequestedSensitivities>, Option<Vec<Dispersion>>, Option<bool>) {
+    let sensitivities = asked(object);
+    let dispersions = object
+        .field("dispersions", "Dispersions")
+        .doc(
+            "Uncertain numbers of the case. The response then contains the linear `covariance` of the end of the \
+             flight. Not supported for CSV and map formats.",
+        )
+        .optional()
+        .objects([0, MOST_VARIED], dispersion);
+    let verify = object
+        .field("verify", "Accuracy check")
+        .doc(
+            "Whether the response reports the numerical accuracy of the flight, as `verification`. It takes the \
+             computing time of about two flights. Not supported for CSV and map formats.",
+        )
+        .default(false)
+        .boolean();
+    (sensitivities, dispersions, verify)
+}
+
+/// Where it flies.
+fn environment(object: &mut Object) -> (Option<Planet>, Option<Atmosphere>, Option<f64>, Option<Wind>) {
+    let planet =
+        object.field("planet", "Planet").doc("Planet: shape, gravity and rotation.").default(json!({})).object(planet);
+    let atmosphere = object
+        .field("atmosphere", "Atmosphere")
+        .doc(
+            "Atmosphere model. The default is the exponential atmosphere of the thesis, with the warning \
+             `thesis_atmosphere`; use `us76` for new cases on the Earth.",
+        )
+        .default(json!({"type": "exponential"}))
+        .object(atmosphere);
+    let density_factor = object
+        .field("density_factor", "Density factor")
+        .doc("Factor on the density of the atmosphere model; 1.2 means 20 % denser air.")
+        .default(1.0)
+        .number(Bound::NON_NEGATIVE);
+    let wind = object
+        .field("wind", "Wind")
+        .doc("Velocity of the air relative to the rotating planet. Without it, the air rotates with the planet.")
+        .optional()
+        .object(wind);
+    (planet, atmosphere, density_factor, wind)
 }
 
 /// The unit of the angles that are read after it.
