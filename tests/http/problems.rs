@@ -43,7 +43,7 @@ async fn a_request_that_cannot_be_read_gets_its_problem() {
         (
             post_json("/simulat", &capsule()),
             json!({"type": "/problems/not-found", "title": "Not found", "status": 404,
-                "detail": "no resource at /simulat; see /docs"}),
+                "detail": "no resource at /simulat; see /docs/ and /guide/"}),
         ),
         (
             get,

@@ -48,7 +48,7 @@ pub enum ApiError {
         least: usize,
     },
     /// There is nothing at this path.
-    #[error("no resource at {0}; see /docs")]
+    #[error("no resource at {0}; see /docs/ and /guide/")]
     NotFound(String),
     /// The path does not know the method.
     #[error("{0} does not support this method; see /docs")]

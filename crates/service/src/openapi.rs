@@ -231,11 +231,11 @@ fn name_constants(value: &mut Value) {
 
 fn add_examples(paths: &mut Map<String, Value>) {
     let simulate = json!({
-        "deorbit": {"summary": "A capsule comes down from orbit: a burn, the heat of entry, parachutes",
+        "deorbit": {"summary": "Capsule from orbit: deorbit burn, heating, parachutes",
             "value": parsed(include_str!("../../../openapi/examples/deorbit.json"))},
-        "lifting_capsule": {"summary": "A lifting capsule comes home: banked by a schedule, in standard air and wind, under the Earth's flattening",
+        "lifting_capsule": {"summary": "Lifting capsule: bank schedule, standard atmosphere, wind, zonal gravity",
             "value": parsed(include_str!("../../../openapi/examples/lifting_capsule.json"))},
-        "sample_return": {"summary": "A sample capsule returns from a comet: from the inertial state at entry, with heating and parachutes",
+        "sample_return": {"summary": "Sample return capsule: inertial entry state, heating, parachutes",
             "value": parsed(include_str!("../../../openapi/examples/sample_return.json"))},
         "target_1": {"summary": "TARGET reference case 1, of the thesis: steep and fast, from orbital elements",
             "value": parsed(include_str!("../../../openapi/examples/target_1.json"))},

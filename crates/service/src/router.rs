@@ -55,7 +55,11 @@ pub fn app(state: AppState) -> Router {
         .route("/guide", get(guide::redirect))
         .route("/guide/", get(guide::contents))
         .route("/guide/{name}", get(guide::file))
+        .route("/problems", get(guide::problems))
+        .route("/problems/", get(guide::problems))
         .route("/problems/{name}", get(guide::problem))
+        .route("/warnings", get(guide::warnings))
+        .route("/warnings/", get(guide::warnings))
         .route("/warnings/{name}", get(guide::warning))
         .route("/", get(page::index))
         .route("/assets/{name}", get(page::asset));

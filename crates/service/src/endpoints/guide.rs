@@ -36,6 +36,16 @@ pub async fn file(uri: OriginalUri, Path(name): Path<String>, request: Parts) ->
     answer(&format!("/guide/{name}{end}"), &uri, &request)
 }
 
+/// All kinds of problems.
+pub async fn problems() -> Redirect {
+    Redirect::permanent("/guide/problems")
+}
+
+/// All codes of warnings.
+pub async fn warnings() -> Redirect {
+    Redirect::permanent("/guide/warnings")
+}
+
 /// A kind of problem.
 ///
 /// # Errors

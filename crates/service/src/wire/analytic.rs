@@ -19,7 +19,7 @@ use super::sensitivities::SensitivitiesAnswer;
 use super::state::Coordinates;
 use super::trajectory::RequestedAnalyses;
 use super::verification::Verification;
-use super::warning::Warning;
+use super::warning::{Purpose, Warning};
 use super::{Angle, AngleUnit};
 
 /// The words for theories.
@@ -299,7 +299,7 @@ impl AnalyticResponse {
             flight_path_angle: angles.into_iter().map(|angle| angle.map(|angle| unit.from_radians(angle))).collect(),
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
-        let mut warnings = Warning::of(&request, flight, analyses.unverified);
+        let mut warnings = Warning::of(&request, flight, analyses.unverified, Purpose::Theory);
         if is_given(&request.control.bank_angle) {
             warnings.push(Warning::bank_left_out());
         }

@@ -18,7 +18,7 @@ use super::schema::names;
 use super::sensitivities::SensitivitiesAnswer;
 use super::vehicle;
 use super::verification::Verification;
-use super::warning::Warning;
+use super::warning::{Purpose, Warning};
 
 /// How the flight ended. `surface_impact`: downward crossing of a `stop.altitude` of 0. `stop_altitude`: downward
 /// crossing of any other `stop.altitude`. `time_limit`: `stop.time` was reached. `condition`: a condition of
@@ -261,7 +261,7 @@ impl SimulateResponse {
         let known = request.known();
         let row = |point| Row::new(point, unit, known);
         let statistics = flight.statistics();
-        let warnings = Warning::of(&request, flight, analyses.unverified);
+        let warnings = Warning::of(&request, flight, analyses.unverified, Purpose::Flight);
         let report = |EventPoint { event, before, after }| EventReport {
             index: event,
             name: request.events[event].name.clone(),

@@ -17,6 +17,15 @@ use super::scenario::SimulateRequest;
 use super::state::{FRAMES, Frame, State};
 use super::{Angle, AngleUnit};
 
+/// For what a case is flown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// The flight itself.
+    Flight,
+    /// A theory beside it, which needs an exponential atmosphere.
+    Theory,
+}
+
 /// Warning about the request or the flight.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 pub struct Warning {
@@ -35,12 +44,18 @@ impl Warning {
         Self { code, detail: detail.to_owned(), time: None }
     }
 
-    /// What there is to know of a flight and of the request for it; with the reason for which it could not be verified, if it was to be.
-    pub fn of(request: &SimulateRequest, flight: &Trajectory, unverified: Option<SimulationError>) -> Vec<Self> {
+    /// What there is to know of a flight and of the request for it; with the reason for which it could not be verified, if it was to be, and
+    /// with the purpose of the flight.
+    pub fn of(
+        request: &SimulateRequest,
+        flight: &Trajectory,
+        unverified: Option<SimulationError>,
+        purpose: Purpose,
+    ) -> Vec<Self> {
         let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
         warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
-        warnings.extend(request.assumed.atmosphere.then(|| Self::thesis_atmosphere(request.planet.model)));
+        warnings.extend(request.assumed.atmosphere.then(|| Self::thesis_atmosphere(request.planet.model, purpose)));
         warnings.extend(Self::gas_of_earth(request));
         let later = request.events.iter().filter_map(|event| event.then.core.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
@@ -69,8 +84,11 @@ impl Warning {
     }
 
     /// The default air is denser than the Earth's.
-    fn thesis_atmosphere(planet: PlanetModel) -> Self {
+    fn thesis_atmosphere(planet: PlanetModel, purpose: Purpose) -> Self {
         let remedy = match planet {
+            _ if purpose == Purpose::Theory => {
+                "Theories need an exponential one: set its \"surface_density\" and \"scale_height\", or {\"type\": \"exponential\"} to keep it"
+            }
             PlanetModel::Custom => "Set the \"atmosphere\" of the planet",
             _ => "Set \"atmosphere\": {\"type\": \"us76\"}, or {\"type\": \"exponential\"} to keep it",
         };

@@ -2,34 +2,14 @@ import { readFileSync } from 'node:fs';
 import type { Plugin } from 'vite';
 
 const ROOT = new URL('../../../../', import.meta.url);
-/** Cases of the service's own, with a title and notes. */
-const OWN: Record<string, { title: string; notes: string }> = {
-  lifting_capsule: {
-    title: 'Lifting capsule',
-    notes:
-      'Fictitious capsule with lift from its angle of attack. The bank angle follows a schedule: to one side, then back. The drogue parachute inflates at 8 km in 1 s, the main parachute at 3 km in 8 s. Touchdown speed is 9 m/s, including 5 m/s of wind.',
-  },
-  deorbit: {
-    title: 'Capsule from orbit',
-    notes:
-      'Fictitious capsule of Soyuz size: deorbit burn half a revolution before landing, separation, parachutes. The parachutes open instantly in this case, so their opening loads are higher than those of a real capsule.',
-  },
-  sample_return: {
-    title: 'Sample return capsule',
-    notes:
-      'Vehicle and entry state of Stardust (AIAA 2008-1198), with a constant drag coefficient and parachutes of similar size. The entry point is assumed: the capsule lands in Utah. Compare the peak load with the published 32.9 g.',
-  },
-};
-/** Notes on real flights, by their names. */
-const FLOWN: Record<string, string> = {
-  'Stardust, 15 January 2006':
-    'The entry latitude is not published; 41° N is assumed. Each additional degree lowers the peak load by 0.12 g and adds 0.6 s. The longitude is also assumed and does not affect the loads: with 123.3° W the capsule lands in Utah at 38.9° N 113.5° W, 160 km south of the actual landing point (40.4° N). The drag coefficient at Mach 42.7 is 1.5636 (project orp); with 1.464 (project asim) the peak load is 0.1 g higher. The drag table ends at Mach 10.5; below, its last value is used, which is too high. No wind. The peak load was not measured: the published value is from a simulation with drag multiplied by 1.0083 to match radar data at the drogue. Convective heating only (Sutton–Graves). The uncertainty of the load is the preflight 3σ dispersion.',
-  'Genesis, 8 September 2004':
-    'Latitude and azimuth are not published; those of Stardust, which landed in the same range, are assumed. At the equator the peak load is 1.2 g higher, at 45° 0.2 g lower. The longitude is also assumed and does not affect the loads: with 122.8° W the capsule lands in Utah at 39.0° N 113.4° W, 130 km south of the actual landing point (40.2° N). The 3σ uncertainty of the flight-path angle is 0.0274°. The peak load was not measured: the published value is from a simulation with drag multiplied by 0.919 to match radar data.',
-  'Apollo 10, 26 May 1969, as flown':
-    'The source has no bank history; lift up is assumed, as planned for the first dive. Only the first dive is simulated. The aerodynamic table ends at Mach 29.5.',
-  'Apollo 10, as planned':
-    'Entry at 400 000 ft, 36 310 ft/s and −6.52°, lift up. Published values are rounded to 1 s, 10 ft/s (11 091.7 m/s is 36 390 ft/s) and 0.1 g. The published altitude refers to the Fischer ellipsoid; WGS 84 is used here.',
+/** Cases of the service's own, with notes. */
+const OWN: Record<string, string> = {
+  lifting_capsule:
+    'Fictitious capsule with lift from its angle of attack. The bank angle follows a schedule: to one side, then back. The drogue parachute inflates at 8 km in 1 s, the main parachute at 3 km in 8 s. Touchdown speed is 9 m/s, including 5 m/s of wind.',
+  deorbit:
+    'Fictitious capsule of Soyuz size: deorbit burn half a revolution before landing, separation, parachutes. The parachutes open instantly in this case, so their opening loads are higher than those of a real capsule.',
+  sample_return:
+    'Vehicle and entry state of Stardust (AIAA 2008-1198), with a constant drag coefficient and parachutes of similar size. The entry point is assumed: the capsule lands in Utah. Compare the peak load with the published 32.9 g.',
 };
 /** The cases of the thesis, with their titles. */
 const THESIS: Record<string, string> = {
@@ -82,9 +62,9 @@ function read(path: string): any {
 }
 
 function own(): Example[] {
-  return Object.entries(OWN).map(([file, { title, notes }]) => {
+  return Object.entries(OWN).map(([file, notes]) => {
     const request = read(`openapi/examples/${file}.json`);
-    return { group: 'Missions', title, case: { ...request, name: title }, notes };
+    return { group: 'Missions', title: request.name, case: request, notes };
   });
 }
 
@@ -108,7 +88,7 @@ function flown(): Example[] {
   return flights.map((flight: Tree) => {
     const like = flights.find((other: Tree) => other.name === flight.like);
     const { output: _, ...request } = [like, flight].reduce((merged, part) => merge(merged, part?.request ?? {}), defaults) as Tree;
-    const notes = `${FLOWN[flight.name as string] ?? flight.note} Source: ${flight.source}.`;
+    const notes = `${flight.note} Source: ${flight.source}.`;
     return { group: 'Real flights', title: flight.name as string, case: { name: flight.name, ...request }, notes };
   });
 }
