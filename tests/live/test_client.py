@@ -67,6 +67,13 @@ def reentry(service, package):
     return SimpleNamespace(models=models, **functions)
 
 
+@pytest.mark.parametrize("path", sorted((OPENAPI / "examples").glob("*.json")), ids=lambda path: path.stem)
+def test_every_example_is_a_typed_request(reentry, path):
+    tree = json.loads(path.read_text())
+    kind = "ConvertRequest" if "state" in tree else "AnalyticRequest" if "solution" in tree else "SimulateRequest"
+    assert getattr(reentry.models, kind).from_dict(tree).to_dict() == tree
+
+
 def place(state):
     """Planet-fixed, m."""
     cosine = math.cos(state["geocentric_latitude"])

@@ -8,6 +8,7 @@ use axum::http::{HeaderValue, Uri};
 use clap::{Args, ValueEnum};
 use ipnet::IpNet;
 use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::LevelFilter;
 
 /// Settings of `reentry serve`.
 #[derive(Args, Clone, Debug)]
@@ -251,8 +252,12 @@ fn network(text: &str) -> Result<IpNet, String> {
         .ok_or_else(|| "must be a network, for example 10.0.0.0/8, or an address".to_owned())
 }
 
-/// Levels of the log.
+/// Levels of the log. A word that is no level would be taken for a module of which everything is logged, and nothing of the others.
 fn levels(text: &str) -> Result<String, String> {
+    let is_level = |part: &str| part.contains('=') || part.trim().parse::<LevelFilter>().is_ok();
+    if !text.split(',').all(is_level) {
+        return Err("must be off, error, warn, info, debug or trace, or MODULE=LEVEL, between commas".to_owned());
+    }
     EnvFilter::try_new(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
 }
 

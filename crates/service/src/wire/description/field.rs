@@ -330,7 +330,8 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
             |schema| {
                 let word = words.component(schema);
                 let object = described(schema, &read);
-                schema.component(union.name, json!({"oneOf": [word, object], "description": union.doc}))
+                // The object first: a generated client stops at the first constant that does not fit.
+                schema.component(union.name, json!({"oneOf": [object, word], "description": union.doc}))
             },
             |reader, name| {
                 if reader.has_object(name) {
