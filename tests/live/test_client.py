@@ -71,7 +71,9 @@ def reentry(service, package):
 def test_every_example_is_a_typed_request(reentry, path):
     tree = json.loads(path.read_text())
     kind = "ConvertRequest" if "state" in tree else "AnalyticRequest" if "solution" in tree else "SimulateRequest"
-    assert getattr(reentry.models, kind).from_dict(tree).to_dict() == tree
+    # It writes Z as an offset.
+    again = json.dumps(getattr(reentry.models, kind).from_dict(tree).to_dict()).replace("+00:00", "Z")
+    assert json.loads(again) == tree
 
 
 def place(state):

@@ -60,28 +60,31 @@ const ORDER: [&str; 8] = [
 ];
 
 /// How a body may be sent.
-const BODY: &str = "With `Content-Encoding: gzip` or `zstd` it may come compressed; the greatest length of a body then is that of its text.";
+const BODY: &str =
+    "May be compressed: `Content-Encoding: gzip` or `zstd`. The limit on its length applies to the decompressed text.";
 
 /// Every failure that every endpoint may answer with.
 const FAILURES: [(&str, &str); 14] = [
-    ("400", "Not JSON, duplicate keys, an unknown query parameter, or a head that is no request."),
-    ("404", "There is nothing at this path."),
-    ("405", "The path does not know this method."),
-    ("406", "None of the representations that the client accepts."),
-    ("408", "The body did not come in the time allowed, or too slowly where memory is short."),
-    ("413", "The body is too long; of one in gzip or Zstandard, its text."),
+    ("400", "The body is not JSON, has a key twice, or the query string or the request itself is malformed."),
+    ("404", "No resource at this path."),
+    ("405", "The path does not support this method."),
+    ("406", "No format that the client accepts."),
+    ("408", "The body did not arrive in time."),
+    ("413", "The body is too long."),
     ("414", "The path is too long."),
-    ("415", "The body is not declared as JSON, or comes in another `Content-Encoding` than gzip or zstd."),
-    ("422", "Not a valid case, or a flight that cannot be finished; every fault with its pointer."),
+    ("415", "The body is not declared as JSON, or has another `Content-Encoding` than gzip or zstd."),
+    (
+        "422",
+        "The case is not valid, or the flight cannot be completed. `errors` has every fault with its JSON pointer.",
+    ),
     (
         "429",
-        "More than this client may ask for: requests and computing where there is a rate limit, half of the memory or of the batches; \
-         `Retry-After` says when to come back.",
+        "The client exceeds its rate limit or its share of memory or batches. Try again after `Retry-After` seconds.",
     ),
-    ("431", "The head of the request is too large."),
-    ("500", "A fault of the service."),
-    ("503", "Busy; `Retry-After` says when to come back."),
-    ("504", "The time allowed ran out."),
+    ("431", "The request head is too large."),
+    ("500", "Error of the service."),
+    ("503", "The service is busy. Try again after `Retry-After` seconds."),
+    ("504", "The time limit was exceeded."),
 ];
 
 /// The document of an API, as strict as the service is about its requests.
@@ -151,11 +154,11 @@ fn problems() -> Value {
     };
     let short = |error: &ApiError| json!(error.problem());
     json!({
-        "Problem": problem("A problem document.", None, short(&ApiError::DeadlineExceeded { seconds: 10.0 })),
+        "Problem": problem("A problem document (RFC 9457).", None, short(&ApiError::DeadlineExceeded { seconds: 10.0 })),
         "MethodNotAllowed":
             problem("Method not allowed.", Some(("allow", "Allow")), short(&ApiError::MethodNotAllowed("/simulate".to_owned()))),
         "TryAgain": problem("Try again later.", Some(("retry-after", "RetryAfter")), short(&ApiError::Busy)),
-        "InvalidCase": problem("Not a valid case.", None, parsed(include_str!("../../../openapi/answers/invalid.json"))),
+        "InvalidCase": problem("The case is not valid.", None, parsed(include_str!("../../../openapi/answers/invalid.json"))),
     })
 }
 
@@ -180,11 +183,11 @@ fn headers() -> Value {
     let header = |description, schema| json!({"description": description, "required": true, "schema": schema});
     json!({
         "RequestId": header(
-            "Names the request, as in the log: what the request's own `x-request-id` says or, without one that is sound, a new name.",
+            "Identifies the request in the log: the request's own `x-request-id` if it is valid, else a new one.",
             json!({"type": "string", "pattern": "^[!-~]{1,128}$"}),
         ),
-        "RetryAfter": header("In how many seconds to come back.", json!({"type": "integer", "minimum": 1})),
-        "Allow": header("The methods that the path knows.", json!({"type": "string"})),
+        "RetryAfter": header("Seconds to wait before the next attempt.", json!({"type": "integer", "minimum": 1})),
+        "Allow": header("Methods that the path supports.", json!({"type": "string"})),
     })
 }
 
@@ -207,7 +210,7 @@ fn add_links(paths: &mut Map<String, Value>) {
         let again = json!({
             "operationId": operation["operationId"],
             "requestBody": "$response.body#/case",
-            "description": "With `echo`: the request with every default filled in has the same answer, without warnings of what was left out.",
+            "description": "With `echo`: the returned case can be sent again and gives the same answer, without the warnings about defaults.",
         });
         operation["responses"]["200"]["links"] = json!({"again": again});
     }
@@ -237,19 +240,19 @@ fn add_examples(paths: &mut Map<String, Value>) {
             "value": parsed(include_str!("../../../openapi/examples/lifting_capsule.json"))},
         "sample_return": {"summary": "Sample return capsule: inertial entry state, heating, parachutes",
             "value": parsed(include_str!("../../../openapi/examples/sample_return.json"))},
-        "target_1": {"summary": "TARGET reference case 1, of the thesis: steep and fast, from orbital elements",
+        "target_1": {"summary": "TARGET reference case 1 of the thesis: steep and fast, from orbital elements",
             "value": parsed(include_str!("../../../openapi/examples/target_1.json"))},
-        "target_2": {"summary": "TARGET reference case 2, of the thesis: a banked, lifting vehicle",
+        "target_2": {"summary": "TARGET reference case 2 of the thesis: banked, lifting vehicle",
             "value": parsed(include_str!("../../../openapi/examples/target_2.json"))},
-        "impulse": {"summary": "IMPULSE reference case, of the thesis: from inertial vectors",
+        "impulse": {"summary": "IMPULSE reference case of the thesis: from inertial vectors",
             "value": parsed(include_str!("../../../openapi/examples/impulse.json"))},
     });
     let convert = json!({
-        "impulse": {"summary": "The initial state of the IMPULSE reference case",
+        "impulse": {"summary": "Initial state of the IMPULSE reference case",
             "value": parsed(include_str!("../../../openapi/examples/impulse_state.json"))},
     });
     let analytic = json!({
-        "steep_ballistic": {"summary": "A small vehicle falls steeply from 400 km: the straight line of the ballistic theory",
+        "steep_ballistic": {"summary": "Steep ballistic entry from 400 km beside the ballistic theory",
             "value": parsed(include_str!("../../../openapi/examples/steep_ballistic.json"))},
     });
     let batch = json!({
