@@ -4,6 +4,7 @@ pub(crate) mod flights;
 
 mod analytic;
 mod atmosphere;
+mod bodies;
 mod conversions;
 mod departures;
 mod dispersions;

@@ -9,7 +9,7 @@ const CORE: [&[&str]; 12] = [
     &["scalar", "root", "number_text", "interrupt"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
-    &["event"],
+    &["event", "body"],
     &["coordinates"],
     &["wind"],
     &["motion"],

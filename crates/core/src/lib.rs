@@ -81,6 +81,7 @@ pub mod analytic;
 pub mod motion;
 
 pub mod atmosphere;
+pub mod body;
 pub mod control;
 pub mod event;
 pub mod heating;
