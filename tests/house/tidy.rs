@@ -173,8 +173,10 @@ fn the_core_knows_no_json_clock_thread_file_or_chance() {
         }
     }
     let manifest = fs::read_to_string(root().join("crates/core/Cargo.toml")).unwrap();
+    // What compiles the files of the bodies into it is no part of it.
+    let at_run_time = manifest.split("[build-dependencies]").next().unwrap();
     for name in ["serde", "tokio", "axum", "tracing"] {
-        assert!(!manifest.contains(name), "the core depends on {name}");
+        assert!(!at_run_time.contains(name), "the core depends on {name}");
     }
 }
 

@@ -5,7 +5,6 @@ use std::sync::{Arc, LazyLock};
 use crate::atmosphere::{Atmosphere, Gas, Table};
 use crate::planet::{Gravity, Planet, Shape, Zonal};
 
-
 /// A body.
 #[derive(Debug)]
 pub struct Body {

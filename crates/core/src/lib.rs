@@ -61,6 +61,7 @@
 //! | arrival | the end of a flight: its time, state and termination |
 //! | variation | a number of a case that varies, as the case with the number moved a little, several times |
 //! | output | a number that a flight gives at a moment; its slopes are its derivatives by variations |
+//! | body | a planet or moon whose numbers are known: its gravity, shape, rotation and air |
 //! | dispersion | how far a number of a case, or an output, scatters about its own value |
 //! | peak | the greatest value of a load or a heat flux, located between the steps |
 //!
