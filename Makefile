@@ -4,7 +4,7 @@
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 VENV := $(TARGET)/venv
 UI := crates/service/ui
-PYTEST = REENTRY=$(TARGET)/release/reentry OVERLOAD=$(TARGET)/debug/examples/overload $(VENV)/bin/python -B -m pytest
+PYTEST = env REENTRY=$(TARGET)/release/reentry OVERLOAD=$(TARGET)/debug/examples/overload $(VENV)/bin/python -B -m pytest
 FUZZ := $(TARGET)/tools/bin/cargo-fuzz
 # How long `make fuzz` runs each target, and on which sanitizer; those beside `none` need a nightly Rust.
 SECONDS := 60
@@ -48,8 +48,9 @@ test: browser $(VENV)/ready ui ## Run all tests
 compiled-tests:
 	cargo test --locked --workspace --no-run
 
+# What measures times goes first.
 contract:
-	$(PYTEST) tests/live/test_contract.py
+	nice $(PYTEST) tests/live/test_contract.py
 
 live:
 	$(PYTEST) tests/live --ignore tests/live/test_contract.py

@@ -40,7 +40,8 @@ def test_one_request_too_many_is_refused_at_once(start):
 
 
 def test_after_the_deadline_nothing_is_computed_any_more(start, cost):
-    service = start("--workers", "1", "--queue", str(CLIENTS), "--deadline", "0.01")
+    # Long enough for a body to arrive where the machine is busy, and no flight is over by then.
+    service = start("--workers", "1", "--queue", str(CLIENTS), "--deadline", str(cost / 4))
     with ThreadPoolExecutor(CLIENTS) as pool:
         answers = list(pool.map(service.simulate, [ORBIT] * CLIENTS))
     for answer in answers:
