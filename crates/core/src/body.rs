@@ -47,6 +47,7 @@ struct BodyAtmosphere {
 }
 
 /// All bodies, by their names.
+#[expect(clippy::unreadable_literal, reason = "the build writes the numbers as the files have them")]
 pub static BODIES: [Body; 8] = include!(concat!(env!("OUT_DIR"), "/bodies.rs"));
 
 /// The atmospheres of the bodies, in the same order.
