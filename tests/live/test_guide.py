@@ -115,6 +115,12 @@ def test_what_a_document_shows_runs_and_prints_what_it_shows(document, service, 
         printed = None
 
 
+def test_the_documents_have_blocks_to_run_and_outputs_to_compare():
+    infos = [info for document in DOCUMENTS for info, *_ in blocks(document)]
+    assert sum(info in RUN for info in infos) > 80
+    assert sum(info in ("json", "text") for info in infos) > 80
+
+
 def test_what_differs_from_what_is_shown_is_seen():
     assert same_number("505075", 505075.06) and not same_number("505075", 505076)
     assert same_number("1.5e-3", 0.00152) and not same_number("1.5e-3", 0.00158)

@@ -24,7 +24,7 @@ struct Chapter {
     /// The name of its file, and the last part of its path.
     name: String,
     title: String,
-    /// What stands before its first section is one without a heading.
+    /// The first has the title of the chapter as its heading.
     sections: Vec<Section>,
 }
 

@@ -48,6 +48,23 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
     )
 }
 
+/// The planet-fixed longitude.
+fn longitude(object: &mut Object) -> Option<f64> {
+    let field = object.field("longitude", "Longitude");
+    field.doc("Planet-fixed longitude, east positive, within ±2π (±360°).").angle(Bound::TURN)
+}
+
+/// The geocentric latitude.
+fn geocentric_latitude(object: &mut Object) -> Option<f64> {
+    let field = object.field("geocentric_latitude", "Geocentric latitude");
+    field.doc("Latitude, north positive, within ±π/2 (±90°).").angle(Bound::QUARTER_TURN)
+}
+
+/// The speed relative to the rotating planet.
+fn speed(object: &mut Object) -> Option<f64> {
+    object.field("speed", "Speed").doc("Speed relative to the rotating planet, m/s.").unit("m/s").number(Bound::SPEED)
+}
+
 fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
     object.named(
         "PlanetRelative",
@@ -55,17 +72,9 @@ fn planet_relative(object: &mut Object, has_epoch: bool) -> Option<State> {
          This is the vehicle-pointing system of the thesis.",
     );
     let height = height(object);
-    let longitude =
-        object.field("longitude", "Longitude").doc("Longitude, east positive, within ±2π (±360°).").angle(Bound::TURN);
-    let geocentric_latitude = object
-        .field("geocentric_latitude", "Geocentric latitude")
-        .doc("Latitude, north positive, within ±π/2 (±90°).")
-        .angle(Bound::QUARTER_TURN);
-    let speed = object
-        .field("speed", "Speed")
-        .doc("Speed relative to the rotating planet, m/s.")
-        .unit("m/s")
-        .number(Bound::SPEED);
+    let longitude = longitude(object);
+    let geocentric_latitude = geocentric_latitude(object);
+    let speed = speed(object);
     let flight_path_angle = object
         .field("flight_path_angle", "Flight-path angle")
         .doc(
@@ -112,17 +121,12 @@ fn geodetic(object: &mut Object, has_epoch: bool) -> Option<State> {
         .doc("Altitude above the planet's surface along the surface normal, m.")
         .unit("m")
         .number(Bound::DISTANCE);
-    let longitude =
-        object.field("longitude", "Longitude").doc("Longitude, east positive, within ±2π (±360°).").angle(Bound::TURN);
+    let longitude = longitude(object);
     let geodetic_latitude = object
         .field("geodetic_latitude", "Geodetic latitude")
         .doc("Latitude, north positive, within ±π/2 (±90°).")
         .angle(Bound::QUARTER_TURN);
-    let speed = object
-        .field("speed", "Speed")
-        .doc("Speed relative to the rotating planet, m/s.")
-        .unit("m/s")
-        .number(Bound::SPEED);
+    let speed = speed(object);
     let flight_path_angle = object
         .field("flight_path_angle", "Flight-path angle")
         .doc("Angle of the relative velocity above the geodetic horizontal, within ±π/2 (±90°); negative in descent.")
@@ -257,14 +261,8 @@ fn inertial_flight_path(object: &mut Object, has_epoch: bool) -> Option<State> {
          horizontal. Flight reports give the entry interface in this form.",
     );
     let height = height(object);
-    let longitude = object
-        .field("longitude", "Longitude")
-        .doc("Planet-fixed longitude, east positive, within ±2π (±360°).")
-        .angle(Bound::TURN);
-    let geocentric_latitude = object
-        .field("geocentric_latitude", "Geocentric latitude")
-        .doc("Latitude, north positive, within ±π/2 (±90°).")
-        .angle(Bound::QUARTER_TURN);
+    let longitude = longitude(object);
+    let geocentric_latitude = geocentric_latitude(object);
     let inertial_speed = object
         .field("inertial_speed", "Inertial speed")
         .doc("Magnitude of the inertial velocity, m/s. The speed relative to the rotating planet must be at most 1e6.")
