@@ -15,7 +15,17 @@ fn main() -> io::Result<()> {
     files.sort();
     let entries = files.iter().map(|file| entry(file)).collect::<io::Result<String>>()?;
     let out = Path::new(&env::var("OUT_DIR").map_err(io::Error::other)?).join("bodies.rs");
-    fs::write(out, format!("[\n{entries}]"))
+    fs::write(out, format!("&[\n{entries}]"))
+}
+
+/// A list of numbers.
+fn numbers(list: &Value) -> Option<Vec<f64>> {
+    list.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+/// A list of three numbers each.
+fn rows(list: &Value) -> Option<Vec<[f64; 3]>> {
+    list.as_array()?.iter().map(|row| numbers(row)?.try_into().ok()).collect()
 }
 
 /// The entry of a body.
@@ -31,21 +41,37 @@ fn entry(file: &Path) -> io::Result<String> {
     };
     member("name", format!("{:?}", word("/name")?));
     member("title", format!("{:?}", word("/title")?));
+    member("doc", format!("{:?}", word("/description")?));
     for name in ["gravitational_parameter", "equatorial_radius", "polar_radius", "rotation_rate", "prime_meridian"] {
         member(name, format!("{:?}", number(&format!("/{name}/value"))?));
     }
     member("zonal", format!("{:?}", [number("/zonal/j2")?, number("/zonal/j3")?, number("/zonal/j4")?]));
+    let terms = body.pointer("/prime_meridian/periodic_terms").map_or(Some(Vec::new()), rows);
+    let terms = terms.ok_or_else(|| wrong("/prime_meridian/periodic_terms"))?;
+    member("prime_meridian_terms", format!("&{terms:?}"));
     let constant = body.pointer("/sutton_graves_constant/value").and_then(Value::as_f64);
     member("sutton_graves_constant", format!("{constant:?}"));
-    let radiation = body.get("radiation").and_then(Value::as_str);
-    member("radiation", format!("{radiation:?}"));
+    let radiation = match body.pointer("/radiation/value").and_then(Value::as_str) {
+        None => "Radiative::None",
+        Some("tauber_sutton") => "Radiative::TauberSuttonMars",
+        Some("craig_lyne") => "Radiative::CraigLyne",
+        Some(_) => return Err(wrong("/radiation/value")),
+    };
+    member("radiation", radiation.to_owned());
     let atmosphere = if body.get("atmosphere").is_some() {
         let mut atmosphere = String::from("Some(BodyAtmosphere { ");
+        let mut length = None;
         for column in COLUMNS {
-            let list = body.pointer(&format!("/atmosphere/{column}")).and_then(Value::as_array);
-            let list = list.ok_or_else(|| wrong(column))?;
-            let numbers: Option<Vec<f64>> = list.iter().map(Value::as_f64).collect();
+            let numbers = body.pointer(&format!("/atmosphere/{column}")).and_then(numbers);
             let numbers = numbers.ok_or_else(|| wrong(column))?;
+            let is_sound = if column == "altitude" {
+                numbers.len() >= 2 && numbers.windows(2).all(|pair| pair[0] < pair[1])
+            } else {
+                numbers.iter().all(|number| *number > 0.0)
+            };
+            if !is_sound || *length.get_or_insert(numbers.len()) != numbers.len() {
+                return Err(wrong(column));
+            }
             let _ = write!(atmosphere, "{column}: &{numbers:?}, ");
         }
         let is_low = word("/atmosphere/confidence")? == "low";

@@ -3,6 +3,7 @@
 use std::sync::{Arc, LazyLock};
 
 use crate::atmosphere::{Atmosphere, Gas, Table};
+use crate::heating::Radiative;
 use crate::planet::{Gravity, Planet, Shape, Zonal};
 
 /// A body.
@@ -12,6 +13,8 @@ pub struct Body {
     pub name: &'static str,
     /// Its name, for people.
     pub title: &'static str,
+    /// What of it is special, for people: one sentence, or several.
+    pub doc: &'static str,
     /// m³/s².
     gravitational_parameter: f64,
     /// m.
@@ -22,12 +25,14 @@ pub struct Body {
     rotation_rate: f64,
     /// W, the angle from the ascending node of its equator on that of the ICRF to its prime meridian, to the east, at J2000, degrees.
     prime_meridian: f64,
+    /// The periodic terms of W: the amplitude, °, and the angle whose sine it goes with, at J2000, °, and in a Julian century, °.
+    prime_meridian_terms: &'static [[f64; 3]],
     /// J₂, J₃ and J₄, for the equatorial radius.
     zonal: [f64; 3],
     /// k of Sutton and Graves in its gas, √kg/m, where it is known.
     pub sutton_graves_constant: Option<f64>,
-    /// The correlation of the radiative flux in its gas, where there is one.
-    pub radiation: Option<&'static str>,
+    /// The correlation of the radiative flux in its gas; none where there is none.
+    pub radiation: Radiative,
     atmosphere: Option<BodyAtmosphere>,
     /// Its file: every number with its unit and source, in JSON.
     pub source: &'static str,
@@ -46,9 +51,17 @@ struct BodyAtmosphere {
     has_low_confidence: bool,
 }
 
-/// All bodies, by their names.
+impl PartialEq for Body {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Body {}
+
+/// All bodies, in the order of their names.
 #[expect(clippy::unreadable_literal, reason = "the build writes the numbers as the files have them")]
-pub static BODIES: [Body; 8] = include!(concat!(env!("OUT_DIR"), "/bodies.rs"));
+pub static BODIES: &[Body] = include!(concat!(env!("OUT_DIR"), "/bodies.rs"));
 
 /// The atmospheres of the bodies, in the same order.
 static ATMOSPHERES: LazyLock<Vec<Atmosphere>> =
@@ -72,20 +85,29 @@ impl Body {
         Zonal { coefficients: self.zonal }
     }
 
-    /// The angle from the inertial to the planet-fixed frame, rad, so many days after J2000 (TDB): W = W₀ + Ẇ d. The inertial x axis is
-    /// the ascending node of the body's equator on that of the ICRF, and periodic terms are left out.
+    /// The angle from the inertial to the planet-fixed frame, rad, so many days after J2000 (TDB).
+    ///
+    /// ```text
+    /// W = W₀ + Ẇ d + Σ a sin(b + c T),   T = d/36525
+    /// ```
+    ///
+    /// The inertial x axis is the ascending node of the body's equator on that of the ICRF.
     ///
     /// # Reference
     /// Archinal et al., Celest. Mech. Dyn. Astron. 130:22 (2018).
     pub fn rotation_angle(&self, days: f64) -> f64 {
         let turned = self.rotation_rate * 86_400.0 * days;
-        (self.prime_meridian.to_radians() + turned).rem_euclid(std::f64::consts::TAU)
+        let term = |[amplitude, at_epoch, by_century]: &[f64; 3]| {
+            amplitude * (at_epoch + by_century * (days / 36_525.0)).to_radians().sin()
+        };
+        let meridian = self.prime_meridian + self.prime_meridian_terms.iter().map(term).sum::<f64>();
+        (meridian.to_radians() + turned).rem_euclid(std::f64::consts::TAU)
     }
 
     /// Its standard atmosphere; a vacuum where it has none.
     pub fn atmosphere(&self) -> Atmosphere {
-        let index = BODIES.iter().position(|body| std::ptr::eq(body, self));
-        index.and_then(|index| ATMOSPHERES.get(index)).cloned().unwrap_or(Atmosphere::Vacuum)
+        let made = BODIES.iter().zip(ATMOSPHERES.iter()).find(|(body, _)| *body == self);
+        made.map_or_else(|| self.tabulated_atmosphere(), |(_, atmosphere)| atmosphere.clone())
     }
 
     /// Where its atmosphere comes from; none where it has none.

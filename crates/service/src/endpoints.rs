@@ -13,5 +13,6 @@ pub mod guide;
 pub mod health;
 pub mod metrics;
 pub mod page;
+pub mod planets;
 pub mod simulate;
 pub mod validation;

@@ -48,11 +48,12 @@ schemas `x-unit` is the unit of a field, `angle` for the one of `angle_unit`.
 `type` answers a page that says what to do, as does `/warnings/CODE` for the warnings of an answer.";
 
 /// The paths in the order in which a reader needs them.
-const ORDER: [&str; 8] = [
+const ORDER: [&str; 9] = [
     "/simulate",
     "/simulate/batch",
     "/convert",
     "/analytic",
+    "/planets",
     "/validation",
     "/health/live",
     "/health/ready",
@@ -112,7 +113,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
                 }
             }
         }
-        for path in ["/health/live", "/health/ready", "/metrics"] {
+        for path in ["/planets", "/health/live", "/health/ready", "/metrics"] {
             add_failures(&mut paths[path]["get"], |status| ["405", "414", "431"].contains(&status));
         }
         add_examples(paths);

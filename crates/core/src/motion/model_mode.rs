@@ -9,6 +9,7 @@ use num_dual::Dual64;
 use super::{Flow, Forces, State};
 use crate::atmosphere::Atmosphere;
 use crate::control::Against;
+use crate::heating::Radiative;
 use crate::scalar::{Over, Scalar};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
@@ -192,12 +193,17 @@ impl Forces {
             // The others hold everywhere.
             _ => None,
         };
+        let radiation = match self.models.heating.as_ref().map(|stagnation| stagnation.heating.radiative) {
+            Some(Radiative::TauberSutton | Radiative::TauberSuttonMars) => Some(TableId::Radiation),
+            // The others are formulae.
+            _ => None,
+        };
         let tables = [
             (Switch::Atmosphere, atmosphere),
             (Switch::Wind, Some(TableId::Wind)),
             (Switch::Mach, Some(TableId::Mach)),
             (Switch::TableAngleOfAttack, Some(TableId::AngleOfAttack)),
-            (Switch::Radiation, Some(TableId::Radiation)),
+            (Switch::Radiation, radiation),
         ];
         tables.into_iter().filter_map(|(switch, table)| {
             let table = table?;

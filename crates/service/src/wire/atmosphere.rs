@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use reentry::atmosphere::{Atmosphere as CoreAtmosphere, EARTH_JAMESON, Gas, Layer, Layers, Table};
+use reentry::body::Body;
 use reentry::scenario::Bound;
 use serde_json::json;
 
 use super::description::{Object, Words, variant, word};
+use super::planet::PlanetModel;
 use super::reader::{MOST_ENTRIES, NumberOrList};
 
 /// The atmosphere of a request.
@@ -14,22 +16,25 @@ use super::reader::{MOST_ENTRIES, NumberOrList};
 pub struct Atmosphere {
     /// The model.
     pub core: CoreAtmosphere,
-    /// For a flight on another planet: what of it is the Earth's, and the remedy; nothing where all of it was given.
+    /// The body whose standard atmosphere it is; none of other atmospheres.
+    pub standard_of: Option<&'static Body>,
+    /// For a flight away from the Earth: what of it is the Earth's, and the remedy; nothing where all of it was given.
     pub of_earth: Option<&'static str>,
 }
 
 impl Atmosphere {
     fn of(core: CoreAtmosphere) -> Self {
-        Self { core, of_earth: None }
+        Self { core, standard_of: None, of_earth: None }
     }
 
     fn of_earth(core: CoreAtmosphere, remedy: &'static str) -> Self {
-        Self { core, of_earth: Some(remedy) }
+        Self { of_earth: Some(remedy), ..Self::of(core) }
     }
 
     /// Its `type`.
     pub fn kind(&self) -> &'static str {
         match self.core {
+            _ if self.standard_of.is_some() => "standard",
             CoreAtmosphere::Exponential { .. } => "exponential",
             CoreAtmosphere::Us76 => "us76",
             CoreAtmosphere::Layers(_) => "layered_exponential",
@@ -40,7 +45,7 @@ impl Atmosphere {
 }
 
 /// The atmosphere.
-pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
+pub(super) fn atmosphere(object: &mut Object, planet: Option<PlanetModel>) -> Option<Atmosphere> {
     object.named(
         "Atmosphere",
         "Atmosphere model. The air rotates with the planet; altitudes are along the radius vector.",
@@ -48,6 +53,7 @@ pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
     object.variants(
         "Kind of atmosphere.",
         &[
+            variant("standard", "Standard", "Standard atmosphere of the planet.", &|object| standard(object, planet)),
             variant("exponential", "Exponential", "Density with one scale height.", &exponential),
             variant("us76", "U.S. Standard 1976", "U.S. Standard Atmosphere, 1976.", &us76),
             variant(
@@ -62,13 +68,29 @@ pub(super) fn atmosphere(object: &mut Object) -> Option<Atmosphere> {
     )
 }
 
+fn standard(object: &mut Object, planet: Option<PlanetModel>) -> Option<Atmosphere> {
+    object.named(
+        "StandardAtmosphere",
+        "Standard atmosphere of the planet: `us76` on the Earth; on the named planets the table that `GET /planets` \
+         lists, with its source; no air on the Moon. A custom planet has none.",
+    );
+    match planet? {
+        PlanetModel::Body(body) => Some(Atmosphere { standard_of: Some(body), ..Atmosphere::of(body.atmosphere()) }),
+        PlanetModel::Custom => {
+            object.fault_of("type", "must not be standard: a custom planet has no standard atmosphere");
+            None
+        }
+        _ => Some(Atmosphere::of(CoreAtmosphere::Us76)),
+    }
+}
+
 #[expect(clippy::unnecessary_wraps, reason = "the descriptions of objects have one type")]
 fn us76(object: &mut Object) -> Option<Atmosphere> {
     object.named(
         "Us76Atmosphere",
         "U.S. Standard Atmosphere, 1976, from -5 to 1000 km: density, temperature, pressure and speed of sound.",
     );
-    Some(Atmosphere::of_earth(CoreAtmosphere::Us76, "Atmosphere us76 is the Earth's: give a table"))
+    Some(Atmosphere::of_earth(CoreAtmosphere::Us76, "Atmosphere us76 is the Earth's: give that of the planet"))
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "the descriptions of objects have one type")]

@@ -173,6 +173,14 @@ impl Epoch {
         day + (second + f64::from(self.nanosecond) * 1e-9) / 86_400.0
     }
 
+    /// Days (of 86 400 s) of barycentric dynamical time since J2000, 2000 January 1, 12 h. It is taken as terrestrial time, from which it differs by 2 ms: 32.184 s
+    /// ahead of TAI, which was 10 s ahead of UTC before its first leap second.
+    pub fn barycentric_days(self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "less than four million days")]
+        let seconds = (self.elapsed() - DAY / 2 + 10) as f64;
+        (seconds + 32.184 + f64::from(self.nanosecond) * 1e-9) / 86_400.0
+    }
+
     /// Seconds since 2000 January 1, 0 h, and one more for every leap second before the instant.
     fn elapsed(self) -> i64 {
         let leap_seconds: i64 = LEAP_SECONDS.iter().map(|leap| i64::from(*leap < self.day)).sum();

@@ -1,10 +1,12 @@
 //! The planet of a request.
 
+use reentry::body::{BODIES, Body};
 use reentry::planet::{Gravity, Planet as CorePlanet, Shape as CoreShape, Zonal};
 use reentry::scenario::Bound;
 use serde_json::json;
 
-use super::description::{Object, Words, variant, word};
+use super::description::{Object, Word, Words, variant, word};
+use super::epoch::Epoch;
 use super::schema::is;
 
 /// The planets whose numbers are known, and those whose numbers a request gives.
@@ -16,6 +18,8 @@ pub enum PlanetModel {
     EarthJamesonListing,
     /// The numbers of the thesis's text.
     EarthJamesonText,
+    /// Another body whose numbers are known.
+    Body(&'static Body),
     /// The four numbers given beside it.
     Custom,
 }
@@ -23,16 +27,35 @@ pub enum PlanetModel {
 /// The words for planets.
 pub const MODELS: Words<PlanetModel> = Words {
     name: "PlanetModel",
-    doc: "Planet model.",
-    words: &[
-        word("earth_wgs84", PlanetModel::EarthWgs84, "Earth, WGS 84").doc("Earth with the constants of WGS 84."),
-        word("earth_jameson_listing", PlanetModel::EarthJamesonListing, "Earth, thesis listing")
-            .doc("Earth with the constants of the thesis's program, which computed its results: g₀ = 9.798 m/s²."),
-        word("earth_jameson_text", PlanetModel::EarthJamesonText, "Earth, thesis text")
-            .doc("Earth with the constants of the thesis's text: g₀ = 9.7803253359 m/s²."),
-        word("custom", PlanetModel::Custom, "Custom")
-            .doc("Planet given by `gravitational_parameter`, `equatorial_radius`, `polar_radius` and `rotation_rate`."),
-    ],
+    doc: "Planet model. `GET /planets` lists the numbers of each, with their sources.",
+    words: &WORDS,
+};
+
+const EARTHS: [Word<PlanetModel>; 3] = [
+    word("earth_wgs84", PlanetModel::EarthWgs84, "Earth, WGS 84").doc("Earth with the constants of WGS 84."),
+    word("earth_jameson_listing", PlanetModel::EarthJamesonListing, "Earth, thesis listing")
+        .doc("Earth with the constants of the thesis's program, which computed its results: g₀ = 9.798 m/s²."),
+    word("earth_jameson_text", PlanetModel::EarthJamesonText, "Earth, thesis text")
+        .doc("Earth with the constants of the thesis's text: g₀ = 9.7803253359 m/s²."),
+];
+
+const CUSTOM: Word<PlanetModel> = word("custom", PlanetModel::Custom, "Custom")
+    .doc("Planet given by `gravitational_parameter`, `equatorial_radius`, `polar_radius` and `rotation_rate`.");
+
+/// The Earths, the bodies, and the planet that a request describes.
+const WORDS: [Word<PlanetModel>; EARTHS.len() + BODIES.len() + 1] = {
+    let mut words = [CUSTOM; EARTHS.len() + BODIES.len() + 1];
+    let mut index = 0;
+    while index < EARTHS.len() {
+        words[index] = EARTHS[index];
+        index += 1;
+    }
+    while index < EARTHS.len() + BODIES.len() {
+        let body = &BODIES[index - EARTHS.len()];
+        words[index] = word(body.name, PlanetModel::Body(body), body.title).doc(body.doc);
+        index += 1;
+    }
+    words
 };
 
 /// A kind of surface.
@@ -51,6 +74,22 @@ const SHAPES: Words<Shape> = Words {
     ],
 };
 
+impl PlanetModel {
+    /// Whether it is an Earth.
+    pub fn is_earth(self) -> bool {
+        matches!(self, Self::EarthWgs84 | Self::EarthJamesonListing | Self::EarthJamesonText)
+    }
+
+    /// How faults and warnings call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Body(body) => body.title,
+            Self::Custom => "a custom planet",
+            _ => "the Earth",
+        }
+    }
+}
+
 /// The planet of a request.
 #[derive(Clone, Copy, Debug)]
 pub struct Planet {
@@ -61,9 +100,23 @@ pub struct Planet {
 }
 
 impl Planet {
-    /// Whether it is an Earth, whose rotation angle and frames follow from the date.
+    /// Whether it is an Earth.
     pub fn is_earth(&self) -> bool {
-        self.model != PlanetModel::Custom
+        self.model.is_earth()
+    }
+
+    /// How faults and warnings call it.
+    pub fn title(&self) -> &'static str {
+        self.model.title()
+    }
+
+    /// How far it is turned at an instant from the inertial frame of date, rad; none of a planet whose rotation angle is not known.
+    pub fn rotation_angle(&self, epoch: Epoch) -> Option<f64> {
+        match self.model {
+            PlanetModel::Body(body) => Some(body.rotation_angle(epoch.barycentric_days())),
+            PlanetModel::Custom => None,
+            _ => Some(epoch.earth_rotation_angle()),
+        }
     }
 
     /// The word for its surface.
@@ -116,6 +169,7 @@ pub(super) fn planet(object: &mut Object) -> Option<Planet> {
         PlanetModel::EarthWgs84 => CorePlanet::EARTH_WGS84,
         PlanetModel::EarthJamesonListing => CorePlanet::EARTH_JAMESON_LISTING,
         PlanetModel::EarthJamesonText => CorePlanet::EARTH_JAMESON_TEXT,
+        PlanetModel::Body(body) => body.planet(),
         PlanetModel::Custom => custom?,
     };
     let core = CorePlanet { gravity: gravity?, ..core };
@@ -180,21 +234,25 @@ fn zonal(object: &mut Object, model: Option<PlanetModel>) -> Option<Zonal> {
         "ZonalGravity",
         "Gravity with zonal harmonics: U = -GM/r (1 - Σ Jₙ (a/r)ⁿ Pₙ(sin φ)), with the equatorial radius a and the \
          geocentric latitude φ. A custom planet requires the coefficients up to `degree`; for the other models they \
-         default to those of the Earth, from WGS 84 and EGM96.",
+         default to those of the body: of the Earth from WGS 84 and EGM96, of the others as `GET /planets` lists them.",
     );
     let degree = object.field("degree", "Degree").doc("Highest degree n of the sum.").default(2).whole_number([2, 4]);
-    let mut coefficient = |order, name, title, doc, of_earth: f64| {
+    let known = match model {
+        Some(PlanetModel::Body(body)) => body.zonal(),
+        _ => Zonal::EARTH,
+    };
+    let mut coefficient = |order, name, title, doc, known: f64| {
         let field = object.field(name, title).doc(doc);
         let field = match (degree, model) {
             // Whether it belongs here is not known; what is given is looked at all the same.
             (None, _) | (_, None) => field.optional(),
             (Some(degree), _) if degree < order => return None,
             (Some(_), Some(PlanetModel::Custom)) => field,
-            (Some(_), Some(_)) => field.default(of_earth),
+            (Some(_), Some(_)) => field.default(known),
         };
         field.number(Bound::ZONAL_COEFFICIENT)
     };
-    let [j2, j3, j4] = Zonal::EARTH.coefficients;
+    let [j2, j3, j4] = known.coefficients;
     let j2 = coefficient(2, "j2", "J₂", "Coefficient J₂; the Earth's is 0.0010826298213.", j2);
     let j3 =
         coefficient(3, "j3", "J₃", "Coefficient J₃, for degree 3 and higher; the Earth's is -2.5326564853e-6.", j3);

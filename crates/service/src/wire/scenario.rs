@@ -15,7 +15,7 @@ use super::epoch::{self, Epoch};
 use super::events::{Condition, Event, EventReferences, MOST_EVENTS, condition, event};
 use super::heating::{Heating, heating};
 use super::numbers::{MOST_VARIED, Numbers};
-use super::planet::{Planet, planet};
+use super::planet::{Planet, PlanetModel, planet};
 use super::reader::Fault;
 use super::sensitivities::{RequestedSensitivities, asked};
 use super::shown::shown;
@@ -59,8 +59,8 @@ pub struct SimulateRequest {
 pub struct AssumedDefaults {
     /// The unit of angles, though some angle is not 0.
     pub angle_unit: bool,
-    /// The atmosphere.
-    pub atmosphere: bool,
+    /// The atmosphere, for which that of the thesis was taken.
+    pub thesis_atmosphere: bool,
 }
 
 /// The rows of the trajectory.
@@ -176,8 +176,8 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let (sensitivities, dispersions, verify) = analyses(object);
     let epoch = epoch(
         object,
-        "Time of t = 0 in RFC 3339 format. On the Earth it defines the angle between the inertial and the \
-         planet-fixed frame, unless the state gives that angle. On a custom planet it only dates the flight.",
+        "Time of t = 0 in RFC 3339 format. It defines the angle between the inertial and the planet-fixed frame, \
+         unless the state gives that angle. On a custom planet it only dates the flight.",
     );
     let (planet, atmosphere, density_factor, wind) = environment(object);
     let vehicle = object
@@ -189,11 +189,12 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .doc("Bank angle and angle of attack during the flight.")
         .default(json!({}))
         .object(control);
+    let model = planet.map(|planet| planet.model);
     let heating = object
         .field("heating", "Heating")
         .doc("Heating of the stagnation point. Without it, no heat flux is computed.")
         .optional()
-        .object(heating);
+        .object(|object| heating(object, model));
     let events = object
         .field("events", "Events")
         .doc("Events during the flight, such as parachutes, burns and separations.")
@@ -216,7 +217,8 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .doc("Formulation and tolerance of the numerical integration.")
         .default(json!({}))
         .object(solver);
-    let assumed = AssumedDefaults { angle_unit: !given[0] && object.turns(), atmosphere: !given[1] };
+    let is_body = matches!(model, Some(PlanetModel::Body(_)));
+    let assumed = AssumedDefaults { angle_unit: !given[0] && object.turns(), thesis_atmosphere: !given[1] && !is_body };
     let (stop, stop_when) = stop?;
     Some(SimulateRequest {
         name,
@@ -269,14 +271,18 @@ fn analyses(object: &mut Object) -> (Option<RequestedSensitivities>, Option<Vec<
 fn environment(object: &mut Object) -> (Option<Planet>, Option<Atmosphere>, Option<f64>, Option<Wind>) {
     let planet =
         object.field("planet", "Planet").doc("Planet: shape, gravity and rotation.").default(json!({})).object(planet);
+    let model = planet.map(|planet| planet.model);
+    let default = if let Some(PlanetModel::Body(_)) = model { "standard" } else { "exponential" };
+    object.fill("atmosphere", json!({"type": default}));
     let atmosphere = object
         .field("atmosphere", "Atmosphere")
         .doc(
-            "Atmosphere model. The default is the exponential atmosphere of the thesis, with the warning \
-             `thesis_atmosphere`; use `us76` for new cases on the Earth.",
+            "Atmosphere model. The default is `standard` on the named planets, and on the Earth and on a custom \
+             planet the exponential atmosphere of the thesis, with the warning `thesis_atmosphere`; use `standard` \
+             for new cases on the Earth.",
         )
-        .default(json!({"type": "exponential"}))
-        .object(atmosphere);
+        .optional()
+        .object(|object| atmosphere(object, model));
     let density_factor = object
         .field("density_factor", "Density factor")
         .doc("Factor on the density of the atmosphere model; 1.2 means 20 % denser air.")
@@ -517,7 +523,8 @@ impl SimulateRequest {
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
         let mut across = Event::area_faults(&self.events, &self.vehicle);
         across.extend(Event::parachute_faults(&self.events));
-        let is_angle_known = self.epoch.is_none() || self.planet.is_earth() || self.initial_state.gives_sidereal();
+        let is_angle_known = self.initial_state.gives_sidereal()
+            || self.epoch.is_none_or(|epoch| self.planet.rotation_angle(epoch).is_some());
         across.extend(Event::frame_faults(&self.events, is_angle_known));
         across.extend(self.name_faults());
         let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();

@@ -257,7 +257,7 @@ impl State {
                 |detail: &str| Fault::new(format!("{pointer}/frame"), format!("{:?} {detail}", FRAMES.of(frame)));
             let epoch = epoch.ok_or_else(|| fault("requires an epoch"))?;
             if !planet.is_earth() {
-                return Err(fault("is a frame of the Earth and is not available for a custom planet"));
+                return Err(fault(&format!("is a frame of the Earth and is not available on {}", planet.title())));
             }
             if !TESTED_YEARS.contains(&epoch.year()) {
                 let [first, last] = [TESTED_YEARS.start(), TESTED_YEARS.end()];
@@ -267,17 +267,24 @@ impl State {
                 Frame::Gcrf => gcrf_to_planet_fixed(epoch.days()),
                 Frame::Teme | Frame::Date => teme_to_planet_fixed(epoch.days()),
             };
-            return Ok(Orientation { frame, sidereal: Sidereal::of_earth(epoch, planet), to_planet });
+            return Ok(Orientation {
+                frame,
+                sidereal: Sidereal::of_epoch(epoch, planet).unwrap_or_default(),
+                to_planet,
+            });
         }
         let sidereal = match epoch {
             _ if self.gives_sidereal() => given,
-            Some(epoch) if planet.is_earth() => Sidereal::of_earth(epoch, planet),
-            Some(_) if self.frame.is_some() => {
-                let detail = "is required: an epoch does not define the angle of a custom planet; give sidereal_time \
-                              or sidereal_angle";
-                return Err(Fault::new(format!("{pointer}/sidereal_time"), detail));
-            }
-            _ => Sidereal { time: Some(SiderealTime(0.0)), angle: None },
+            Some(epoch) => match Sidereal::of_epoch(epoch, planet) {
+                Some(sidereal) => sidereal,
+                None if self.frame.is_some() => {
+                    let detail = "is required: an epoch does not define the angle of a custom planet; give \
+                                  sidereal_time or sidereal_angle";
+                    return Err(Fault::new(format!("{pointer}/sidereal_time"), detail));
+                }
+                None => Sidereal::ALIGNED,
+            },
+            None => Sidereal::ALIGNED,
         };
         Ok(Orientation { frame, sidereal, to_planet: about_pole(sidereal.to_angle(unit, &planet.core)) })
     }
@@ -322,10 +329,16 @@ pub struct Sidereal {
 }
 
 impl Sidereal {
-    /// By the Earth rotation angle of the instant.
-    fn of_earth(epoch: Epoch, planet: &Planet) -> Self {
-        let seconds = epoch.earth_rotation_angle() / planet.core.rotation_rate;
-        Self { time: Some(SiderealTime(seconds)), angle: None }
+    /// The frames are one.
+    const ALIGNED: Self = Self { time: Some(SiderealTime(0.0)), angle: None };
+
+    /// By the rotation angle of the planet at the instant, which lies within a turn; none of a planet whose rotation angle is not known.
+    fn of_epoch(epoch: Epoch, planet: &Planet) -> Option<Self> {
+        let angle = planet.rotation_angle(epoch)?;
+        let rate = planet.core.rotation_rate;
+        // Of a planet that turns westward, the angle falls to 0 in the time.
+        let angle = if rate < 0.0 { angle - std::f64::consts::TAU } else { angle };
+        Some(Self { time: Some(SiderealTime(angle / rate)), angle: None })
     }
 
     fn to_angle(self, unit: AngleUnit, planet: &CorePlanet) -> f64 {

@@ -1,5 +1,6 @@
 //! What the user of a flight should know.
 
+use reentry::body::Body;
 use reentry::coordinates::UndefinedElements;
 use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use reentry::number_text::{NumberText, apart, rounded};
@@ -55,8 +56,10 @@ impl Warning {
         let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
         warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
-        warnings.extend(request.assumed.atmosphere.then(|| Self::thesis_atmosphere(request.planet.model, purpose)));
+        warnings
+            .extend(request.assumed.thesis_atmosphere.then(|| Self::thesis_atmosphere(request.planet.model, purpose)));
         warnings.extend(Self::gas_of_earth(request));
+        warnings.extend(request.atmosphere.standard_of.and_then(Self::atmosphere_of_low_confidence));
         let later = request.events.iter().filter_map(|event| event.then.core.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
         let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
@@ -90,7 +93,7 @@ impl Warning {
                 "Theories need an exponential one: set its \"surface_density\" and \"scale_height\", or {\"type\": \"exponential\"} to keep it"
             }
             PlanetModel::Custom => "Set the \"atmosphere\" of the planet",
-            _ => "Set \"atmosphere\": {\"type\": \"us76\"}, or {\"type\": \"exponential\"} to keep it",
+            _ => "Set \"atmosphere\": {\"type\": \"standard\"}, or {\"type\": \"exponential\"} to keep it",
         };
         let detail = format!(
             "Air is the thesis's exponential atmosphere of the Earth, the default: 1.548 kg/m³ at the ground, 26 % more than us76 \
@@ -101,18 +104,27 @@ impl Warning {
 
     /// Of another planet, what is the Earth's.
     fn gas_of_earth(request: &SimulateRequest) -> Vec<Self> {
-        if request.planet.model != PlanetModel::Custom {
+        if request.planet.is_earth() {
             return Vec::new();
         }
-        let of_air = request.atmosphere.of_earth.filter(|_| !request.assumed.atmosphere).map(str::to_owned);
+        let of_air = request.atmosphere.of_earth.filter(|_| !request.assumed.thesis_atmosphere).map(str::to_owned);
         let correlations = request.heating.iter().flat_map(Heating::of_air).map(|correlation| {
-            let remedy = match correlation {
+            let remedy = match *correlation {
                 "tauber_sutton" => "set \"radiative\": \"none\"",
                 _ => "give {\"type\": \"sutton_graves\", \"constant\": k} of the gas",
             };
             format!("Heat flux by {correlation} is that in the Earth's air: {remedy}")
         });
         of_air.into_iter().chain(correlations).map(|detail| Self::new("gas_of_earth", &detail)).collect()
+    }
+
+    /// The standard atmosphere of the body is hardly known.
+    fn atmosphere_of_low_confidence(body: &Body) -> Option<Self> {
+        let detail = format!(
+            "Standard atmosphere of {} is of low confidence: GET /planets tells its source and what is known of its errors",
+            body.title
+        );
+        body.has_atmosphere_of_low_confidence().then(|| Self::new("atmosphere_of_low_confidence", &detail))
     }
 
     /// The errors of the steps may have grown.
@@ -228,9 +240,20 @@ impl Warning {
         Self::new("rectilinear_motion", detail)
     }
 
-    /// In which frame an inertial state was taken, on the Earth at an epoch.
+    /// In which frame an inertial state was taken, at an epoch.
     pub fn of_frame(state: &State, epoch: Option<Epoch>, planet: &Planet) -> Option<Self> {
-        let frame = state.frame.filter(|_| epoch.is_some() && planet.is_earth())?;
+        let frame = state.frame.filter(|_| epoch.is_some())?;
+        if let PlanetModel::Body(body) = planet.model {
+            let detail = format!(
+                "Inertial frame is date: the equator of {}, with the x axis at its ascending node on the equator of the ICRF. Vectors in \
+                 the ICRF or EME2000 must be turned into it first",
+                body.title
+            );
+            return Some(Self::new("inertial_frame_of_date", &detail));
+        }
+        if !planet.is_earth() {
+            return None;
+        }
         Some(match frame {
             Frame::Date => {
                 let turned = if state.gives_sidereal() {

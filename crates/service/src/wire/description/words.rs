@@ -11,8 +11,10 @@ pub struct Word<T> {
     pub word: &'static str,
     /// The value that it stands for.
     pub meaning: T,
-    title: &'static str,
-    doc: &'static str,
+    /// A label for people.
+    pub title: &'static str,
+    /// A description.
+    pub doc: &'static str,
     unit: &'static str,
 }
 
@@ -49,12 +51,17 @@ pub struct Words<T: 'static> {
 impl<T: Copy + PartialEq> Words<T> {
     /// The word for a value; empty where there is none.
     pub fn of(&self, meaning: T) -> &'static str {
-        self.words.iter().find(|word| word.meaning == meaning).map_or("", |word| word.word)
+        self.word_of(meaning).map_or("", |word| word.word)
+    }
+
+    /// The word for a value, with its label and description.
+    pub fn word_of(&self, meaning: T) -> Option<&'static Word<T>> {
+        self.words.iter().find(|word| word.meaning == meaning)
     }
 
     /// The unit of a quantity; empty where it has none.
     pub fn unit_of(&self, meaning: T) -> &'static str {
-        self.words.iter().find(|word| word.meaning == meaning).map_or("", |word| word.unit)
+        self.word_of(meaning).map_or("", |word| word.unit)
     }
 }
 
