@@ -44,6 +44,9 @@ pub struct Answer {
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
+    if let Some(fault) = Track::globe_fault(&request.request.planet, format) {
+        return Err(ApiError::Invalid(vec![fault]));
+    }
     let start = Instant::now();
     let flight = fly(&request.scenario, interrupt)?;
     let elapsed = start.elapsed().as_secs_f64();

@@ -13,8 +13,11 @@ use reentry::trajectory::{EventPoint, FlightPoint, Trajectory};
 use serde::Serialize;
 use serde_json::json;
 
+use crate::format::Format;
+
 use super::columns::Columns;
 use super::epoch::{Epoch, Utc};
+use super::planet::{Planet, PlanetModel};
 use super::reader::Fault;
 use super::trajectory::{Peak, SimulateResponse};
 
@@ -69,6 +72,27 @@ impl<'a> Track<'a> {
         }
         let vertices = rows.points().iter().map(Vertex::of).collect();
         Ok(Self { answer, epoch, vertices, points: marked(answer, flight, epoch) })
+    }
+
+    /// Why viewers of a format would place flights on the planet on another globe; none where they do not.
+    ///
+    /// `GeoJSON` names the planet beside the track, and a custom planet has no globe of its own: its places are those of the Earth's.
+    pub fn globe_fault(planet: &Planet, format: Format) -> Option<Fault> {
+        let PlanetModel::Body(body) = planet.model else { return None };
+        let detail = match format {
+            Format::Kml if !kml::GLOBES.contains(&body.name) => {
+                format!(
+                    "must be the Earth, {} for KML, whose viewers have no globe of {}",
+                    kml::GLOBES.join(" or "),
+                    body.title
+                )
+            }
+            Format::Czml => {
+                format!("must be the Earth for CZML, whose viewers would place {} on its globe", body.title)
+            }
+            _ => return None,
+        };
+        Some(Fault::new("/planet/model", format!("{detail}; GeoJSON names the planet")))
     }
 
     /// The name of the flight.

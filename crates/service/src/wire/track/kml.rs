@@ -10,6 +10,9 @@ use super::{NamedPoint, Track, Vertex};
 
 type Xml<'a> = Writer<&'a mut dyn Write>;
 
+/// The bodies of which viewers have a globe beside the Earth's: `hint="target=mars"` of the root selects it, as Google Earth reads it.
+pub(super) const GLOBES: [&str; 2] = ["mars", "moon"];
+
 impl Track<'_> {
     /// A document: with an epoch a track with an instant a vertex, without one a line; then the points.
     ///
@@ -24,10 +27,13 @@ impl Track<'_> {
 
     fn write(&self, xml: &mut Xml) -> io::Result<()> {
         xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-        let root = xml.create_element("kml").with_attributes([
+        let mut root = xml.create_element("kml").with_attributes([
             ("xmlns", "http://www.opengis.net/kml/2.2"),
             ("xmlns:gx", "http://www.google.com/kml/ext/2.2"),
         ]);
+        if let Some(globe) = GLOBES.iter().find(|globe| **globe == self.answer.models.planet) {
+            root = root.with_attribute(("hint", format!("target={globe}").as_str()));
+        }
         root.write_inner_content(|xml| {
             element(xml, "Document", |xml| {
                 text(xml, "name", self.name())?;
