@@ -1,10 +1,12 @@
 //! The atmosphere: density by altitude, and what else a model knows of the air.
 
 mod layers;
+pub mod nrlmsise00;
 mod table;
 pub mod us76;
 
 pub use layers::{Layer, Layers};
+use nrlmsise00::Nrlmsise00;
 pub use table::{Gas, MOLAR_GAS_CONSTANT, Table};
 
 use std::sync::Arc;
@@ -27,6 +29,8 @@ pub enum Atmosphere {
     Vacuum,
     /// The U.S. Standard Atmosphere, 1976.
     Us76,
+    /// NRLMSISE-00, by place and time; what takes the altitude alone gives the air above latitude 0 and longitude 0 at t = 0.
+    Nrlmsise00(Arc<Nrlmsise00>),
     /// Layers of one scale height each.
     Layers(Arc<Layers>),
     /// A table.
@@ -77,6 +81,7 @@ impl Atmosphere {
         match self {
             Self::Vacuum | Self::Exponential { .. } => &[],
             Self::Us76 => &us76::BOUNDARIES,
+            Self::Nrlmsise00(_) => &nrlmsise00::BOUNDARIES,
             Self::Layers(layers) => layers.boundaries(),
             Self::Table(table) => table.range(),
         }
@@ -103,6 +108,7 @@ impl Atmosphere {
         match self {
             Self::Vacuum => S::zero(),
             Self::Us76 => us76::density_in(segment, altitude),
+            Self::Nrlmsise00(model) => model.above_origin(altitude).density,
             Self::Layers(layers) => layers.density(segment, altitude),
             Self::Table(table) => table.density(segment, altitude, hint),
             Self::Exponential { surface_density, scale_height } => falling(*surface_density, altitude, *scale_height),
@@ -115,6 +121,10 @@ impl Atmosphere {
     pub fn density_and_sound<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> (S, S) {
         match self {
             Self::Us76 => us76::density_and_sound_in(segment, altitude),
+            Self::Nrlmsise00(model) => {
+                let sample = model.above_origin(altitude);
+                (sample.density, sample.speed_of_sound.unwrap_or_else(S::one))
+            }
             Self::Table(table) => {
                 let sound = table.speed_of_sound(segment, altitude, hint);
                 (table.density(segment, altitude, hint), sound.unwrap_or_else(S::one))
@@ -129,6 +139,7 @@ impl Atmosphere {
     pub fn sample<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
         match self {
             Self::Us76 => us76::sample_in(segment, altitude),
+            Self::Nrlmsise00(model) => model.above_origin(altitude),
             Self::Table(table) => table.sample(segment, altitude, hint),
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => AtmosphereSample {
                 density: self.density(segment, altitude, hint),
@@ -143,7 +154,7 @@ impl Atmosphere {
     pub fn has_speed_of_sound(&self) -> bool {
         match self {
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,
-            Self::Us76 => true,
+            Self::Us76 | Self::Nrlmsise00(_) => true,
             Self::Table(table) => table.has_speed_of_sound(),
         }
     }
@@ -152,7 +163,7 @@ impl Atmosphere {
     pub fn has_temperature(&self) -> bool {
         match self {
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,
-            Self::Us76 => true,
+            Self::Us76 | Self::Nrlmsise00(_) => true,
             Self::Table(table) => table.has_temperature(),
         }
     }
@@ -161,7 +172,7 @@ impl Atmosphere {
     pub fn has_pressure(&self) -> bool {
         match self {
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => false,
-            Self::Us76 => true,
+            Self::Us76 | Self::Nrlmsise00(_) => true,
             Self::Table(table) => table.has_pressure(),
         }
     }
@@ -172,6 +183,7 @@ impl Atmosphere {
             Self::Vacuum => 0.0,
             Self::Exponential { scale_height, .. } => SENSIBLE_SCALE_HEIGHTS * scale_height,
             Self::Us76 => us76::SENSIBLE_ALTITUDE,
+            Self::Nrlmsise00(_) => nrlmsise00::SENSIBLE_ALTITUDE,
             Self::Layers(layers) => layers.sensible_altitude(),
             Self::Table(table) => table.sensible_altitude(),
         }
@@ -183,6 +195,7 @@ impl Atmosphere {
             Self::Vacuum => VACUUM_SCALE_HEIGHT,
             Self::Exponential { scale_height, .. } => *scale_height,
             Self::Us76 => us76::LEAST_SCALE_HEIGHT,
+            Self::Nrlmsise00(_) => nrlmsise00::LEAST_SCALE_HEIGHT,
             Self::Layers(layers) => layers.scale_height(),
             Self::Table(table) => table.scale_height(),
         }

@@ -265,7 +265,7 @@ impl<P: Scalar> Forces<P> {
 
     #[inline(always)]
     fn acceleration_by<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>) -> Vector3<S> {
-        self.acceleration_in::<THESIS, _>(time, state, &self.flow::<THESIS, _>(state))
+        self.acceleration_in::<THESIS, _>(time, state, &self.flow::<THESIS, _>(time, state))
     }
 
     #[inline(always)]
@@ -307,18 +307,18 @@ impl<P: Scalar> Forces<P> {
     /// The acceleration, and the heat flux into the stagnation point, W/m², of the air that meets the vehicle.
     #[inline(always)]
     fn acceleration_and_heat_flux<S: Over<P>>(&self, time: S, state: &State<S>) -> (Vector3<S>, S) {
-        let flow = self.flow::<false, _>(state);
+        let flow = self.flow::<false, _>(time, state);
         let acceleration = self.acceleration_in::<false, _>(time, state, &flow);
         (acceleration, self.heat_flux_of(&flow))
     }
 
     /// Into the stagnation point in a state, W/m²; none where no heating is asked for.
     #[inline(always)]
-    fn heat_flux_in<S: Over<P>>(&self, state: &State<S>) -> S {
+    fn heat_flux_in<S: Over<P>>(&self, time: S, state: &State<S>) -> S {
         if self.models.heating.is_none() {
             return S::zero();
         }
-        self.heat_flux_of(&self.flow::<false, _>(state))
+        self.heat_flux_of(&self.flow::<false, _>(time, state))
     }
 
     /// The same, of the air that meets the vehicle.
@@ -375,14 +375,21 @@ impl<P: Scalar> Forces<P> {
 
     /// The air that meets a vehicle in a state.
     #[inline(always)]
-    fn flow<const THESIS: bool, S: Over<P>>(&self, state: &State<S>) -> Flow<S> {
+    fn flow<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
+        let local = self.local_air::<THESIS, _>(time, || state.position);
+        self.flow_in::<THESIS, _>(local, state)
+    }
+
+    /// The air that meets a vehicle in a state, whose density and speed of sound are given where they depend on more than the altitude.
+    #[inline(always)]
+    fn flow_in<const THESIS: bool, S: Over<P>>(&self, local: Option<(S, S)>, state: &State<S>) -> Flow<S> {
         let State { position, velocity, .. } = state;
         let altitude = self.models.planet.shape.altitude(position);
         match self.wind::<THESIS, _>(altitude) {
             None => {
                 let directions = Directions::of(position, velocity);
                 let ground_speed = directions.speed;
-                self.flow_of::<THESIS, _>(altitude, directions, ground_speed, state.mass)
+                self.flow_of::<THESIS, _>(altitude, local, directions, ground_speed, state.mass)
             }
             Some([east, north]) => {
                 let [x, y, z] = [position.x, position.y, position.z];
@@ -396,29 +403,46 @@ impl<P: Scalar> Forces<P> {
                 let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
                 let north = to_north * (over_equatorial * over_radius * north);
                 let directions = Directions::of(position, &(velocity - east - north));
-                self.flow_of::<THESIS, _>(altitude, directions, length(velocity), state.mass)
+                self.flow_of::<THESIS, _>(altitude, local, directions, length(velocity), state.mass)
             }
         }
     }
 
-    /// The air at an altitude, m, that meets a vehicle of a mass, kg, in the directions of its velocity relative to the air, at a speed relative to
-    /// the planet, m/s.
+    /// Density, kg/m³, and speed of sound, m/s, of an atmosphere that depends on more than the altitude, at a time, s, and a planet-fixed
+    /// position, m; none of the others.
+    #[inline(always)]
+    fn local_air<const THESIS: bool, S: Over<P>>(
+        &self,
+        time: S,
+        position: impl FnOnce() -> Vector3<S>,
+    ) -> Option<(S, S)> {
+        match &self.models.atmosphere {
+            Atmosphere::Nrlmsise00(model) if !THESIS => {
+                let air = model.sample(&self.models.planet.shape, time, &position());
+                Some((air.density, air.speed_of_sound.unwrap_or_else(S::one)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The air at an altitude, m, whose density and speed of sound are given where they depend on more than that, and that meets a vehicle of a
+    /// mass, kg, in the directions of its velocity relative to the air, at a speed relative to the planet, m/s.
     #[inline(always)]
     fn flow_of<const THESIS: bool, S: Over<P>>(
         &self,
         altitude: S,
+        local: Option<(S, S)>,
         directions: Directions<S>,
         ground_speed: S,
         mass: Option<S>,
     ) -> Flow<S> {
-        let density_and_mach = (!THESIS && self.by_mach).then(|| {
-            let (density, sound) = self.models.atmosphere.density_and_sound(
-                self.mode.of(Switch::Atmosphere),
-                altitude,
-                &self.cache.atmosphere,
-            );
-            (density, directions.speed * sound.recip())
+        let known = local.filter(|_| !THESIS).or_else(|| {
+            (!THESIS && self.by_mach).then(|| {
+                let segment = self.mode.of(Switch::Atmosphere);
+                self.models.atmosphere.density_and_sound(segment, altitude, &self.cache.atmosphere)
+            })
         });
+        let density_and_mach = known.map(|(density, sound)| (density, directions.speed * sound.recip()));
         let mass_ratio = if THESIS { None } else { self.mass_ratio(mass) };
         Flow { altitude, directions, ground_speed, density_and_mach, mass_ratio }
     }
@@ -583,7 +607,7 @@ impl Forces {
     /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
     fn longest_step(&self, time: f64, state: &State<f64>) -> f64 {
         let State { position, velocity, .. } = state;
-        let flow = self.flow::<false, _>(state);
+        let flow = self.flow::<false, _>(time, state);
         let radius = length(position);
         let to_air = (flow.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
         let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
@@ -604,7 +628,7 @@ impl Forces {
 
     /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.
     pub(crate) fn power(&self, time: f64, state: &State<f64>) -> Power {
-        let aerodynamic = self.aerodynamic::<false, _>(time, &self.flow::<false, _>(state));
+        let aerodynamic = self.aerodynamic::<false, _>(time, &self.flow::<false, _>(time, state));
         let thrust = self.thrust(time, state).map_or(0.0, |thrust| thrust.dot(&state.velocity));
         Power { drag: -aerodynamic.dot(&state.velocity), thrust }
     }

@@ -152,8 +152,13 @@ where
 /// `K` functions of `N` arguments that go by cells: which cell it is, depends on the values of the arguments.
 pub trait LookUp<const N: usize, const K: usize> {
     /// The functions of arguments that have one value each.
-    fn at<S: Scalar<Value = f64, Mask = bool>>(&self, arguments: [S; N]) -> [S; K];
+    fn at<S: Plain>(&self, arguments: [S; N]) -> [S; K];
 }
+
+/// A number that has one value: `f64`, or a dual number.
+pub trait Plain: Scalar<Value = f64, Mask = bool> + DualNum<Primitive = f64> + DualStruct<Real = f64> {}
+
+impl<S: Scalar<Value = f64, Mask = bool> + DualNum<Primitive = f64> + DualStruct<Real = f64>> Plain for S {}
 
 /// A number that can be added to and multiplied by a parameter: `f64`, or a number of its own kind.
 pub trait Over<P>: Scalar + Add<P, Output = Self> + Mul<P, Output = Self> {}

@@ -616,7 +616,7 @@ impl Trajectory {
         let planet_fixed = state.planet_fixed();
         let flight_path = FlightPath::from_planet_fixed(&planet_fixed).wrapped();
         let (geodetic_latitude, geodetic_altitude) = latitude_and_altitude(&state.position, &planet.shape);
-        let AtmosphereSample { temperature, pressure, speed_of_sound, .. } = forces.air_at(state);
+        let AtmosphereSample { temperature, pressure, speed_of_sound, .. } = forces.air_at(time, state);
         let [bank_angle, angle_of_attack] = forces.angles(time, state);
         let inertial = Inertial::from_planet_fixed(&planet_fixed, planet, 0.0);
         let climb = inertial.position.dot(&inertial.velocity);

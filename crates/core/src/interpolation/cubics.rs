@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::{Axis, Cubic, Hint, TableError, check, cubics, polynomial};
-use crate::scalar::{LookUp, Scalar};
+use crate::scalar::{LookUp, Plain, Scalar};
 
 /// `K` functions of one argument.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +94,7 @@ struct Inside<'a, const K: usize> {
 
 impl<const K: usize> LookUp<1, K> for Inside<'_, K> {
     #[inline(always)]
-    fn at<S: Scalar<Value = f64, Mask = bool>>(&self, [x]: [S; 1]) -> [S; K] {
+    fn at<S: Plain>(&self, [x]: [S; 1]) -> [S; K] {
         let cell = &self.cubics.cells[self.cubics.axis.cell(x.value(), self.hint)];
         from_fn(|k| {
             let [origin, coefficients @ ..] = cell[k];

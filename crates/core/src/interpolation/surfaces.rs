@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::{AT_END, Axis, Hint, TableError, check, cubics, polynomial, slope_between};
-use crate::scalar::{LookUp, Scalar};
+use crate::scalar::{LookUp, Plain, Scalar};
 
 /// Two functions of two arguments, of which the table has a row for every value of the first.
 ///
@@ -110,7 +110,7 @@ struct Inside<'a> {
 
 impl LookUp<2, 2> for Inside<'_> {
     #[inline(always)]
-    fn at<S: Scalar<Value = f64, Mask = bool>>(&self, [x, y]: [S; 2]) -> [S; 2] {
+    fn at<S: Plain>(&self, [x, y]: [S; 2]) -> [S; 2] {
         let Surfaces { first, second, across, origins, along, rows } = self.surfaces;
         let across = &across[first.cell(x.value(), &self.hints[0])];
         let cell = second.cell(y.value(), &self.hints[1]);

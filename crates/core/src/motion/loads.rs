@@ -2,7 +2,7 @@
 
 use super::directions::{Directions, lift_fade_over_cosine};
 use super::{Flow, Forces, Parameters, State, Switch};
-use crate::atmosphere::AtmosphereSample;
+use crate::atmosphere::{Atmosphere, AtmosphereSample};
 use crate::event::Quantity;
 use crate::heating::{HeatFlux, Stagnation};
 use crate::planet::Pull;
@@ -58,7 +58,7 @@ impl<P: Scalar> Forces<P> {
     /// The loads in a state.
     pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &State<S>) -> Loads<S> {
         let State { position, velocity, .. } = state;
-        let mut flow = self.flow::<false, _>(state);
+        let mut flow = self.flow::<false, _>(time, state);
         if flow.density_and_mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
             let (density, sound) = self.models.atmosphere.density_and_sound(
                 self.mode.of(Switch::Atmosphere),
@@ -125,7 +125,8 @@ impl<P: Scalar> Forces<P> {
 
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
     pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &State<S>) -> S {
-        let left = self.flow::<false, _>(state).directions.left;
+        // Whatever the density is.
+        let left = self.flow_in::<false, _>(None, state).directions.left;
         left.dot(&left)
     }
 }
@@ -138,14 +139,20 @@ impl Forces {
 
     /// The angles at which the vehicle flies in a state: σ and α, rad.
     pub fn angles(&self, time: f64, state: &State<f64>) -> [f64; 2] {
-        let flow = self.flow::<false, _>(state);
+        let flow = self.flow_where_mach_matters(time, state);
         [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
     }
 
     /// The air in a state, as far as the atmosphere knows it.
-    pub fn air_at(&self, state: &State<f64>) -> AtmosphereSample<f64> {
-        let altitude = self.models.planet.shape.altitude(&state.position);
-        let sample = self.models.atmosphere.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere);
+    pub fn air_at(&self, time: f64, state: &State<f64>) -> AtmosphereSample<f64> {
+        let shape = &self.models.planet.shape;
+        let sample = match &self.models.atmosphere {
+            Atmosphere::Nrlmsise00(model) => model.sample(shape, time, &state.position),
+            by_altitude => {
+                let altitude = shape.altitude(&state.position);
+                by_altitude.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere)
+            }
+        };
         // By the law of gases, denser air of the same temperature presses harder.
         let factor = self.parameters.density;
         AtmosphereSample {

@@ -40,6 +40,8 @@ pub enum TableId {
     Atmosphere,
     /// The U.S. Standard Atmosphere, 1976, by altitude; below -5 km its lowest layer goes on, above 1000 km its scale height stays.
     Us76,
+    /// NRLMSISE-00, by altitude; below -5 km the temperature stays, above 1000 km its formulas go on.
+    Nrlmsise00,
     /// The wind by altitude.
     Wind,
     /// The aerodynamics by Mach number.
@@ -160,11 +162,16 @@ impl<P: Scalar> Forces<P> {
         if !self.has_switches {
             return [S::zero(); Switch::ALL.len()];
         }
-        let flow = self.flow::<false, _>(state);
+        let flow = self.flow_where_mach_matters(time, state);
         Switch::ALL.map(|switch| match self.boundaries(switch) {
             Some((quantity, _)) => self.quantity_of(quantity, time, &flow),
             None => S::zero(),
         })
+    }
+
+    /// The air that meets the vehicle, as far as angles and coefficients depend on it: without its density, where that takes a look-up of its own.
+    pub(super) fn flow_where_mach_matters<S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
+        if self.by_mach { self.flow::<false, _>(time, state) } else { self.flow_in::<false, _>(None, state) }
     }
 
     fn quantity_of<S: Over<P>>(&self, quantity: SwitchQuantity, time: S, flow: &Flow<S>) -> S {
@@ -190,6 +197,7 @@ impl Forces {
         let atmosphere = match self.models.atmosphere {
             Atmosphere::Table(_) => Some(TableId::Atmosphere),
             Atmosphere::Us76 => Some(TableId::Us76),
+            Atmosphere::Nrlmsise00(_) => Some(TableId::Nrlmsise00),
             // The others hold everywhere.
             _ => None,
         };

@@ -49,7 +49,7 @@ impl<P: Scalar> Spherical<P> {
         let coordinates = coordinates(numbers);
         let state = State::of(FlightPath::from(coordinates).to_planet_fixed(), numbers);
         let rates = self.rates_by_any(time, &coordinates, state.mass);
-        let [mass, heat_load] = [self.0.mass_rate(), self.0.heat_flux_in(&state)].map(Some);
+        let [mass, heat_load] = [self.0.mass_rate(), self.0.heat_flux_in(time, &state)].map(Some);
         State { mass, heat_load, ..state }.numbers(rates)
     }
 }
@@ -126,6 +126,14 @@ struct Place<S> {
     mass: Option<S>,
 }
 
+impl<S: Scalar> Place<S> {
+    /// Planet-fixed, m.
+    fn position(&self) -> Vector3<S> {
+        let (sin_theta, cos_theta) = self.longitude.sin_cos();
+        Vector3::new(self.cos_phi * cos_theta, self.cos_phi * sin_theta, self.sin_phi) * self.radius
+    }
+}
+
 /// A velocity relative to the planet, by its magnitude and its angles.
 struct Velocity<S> {
     speed: S,
@@ -160,10 +168,11 @@ impl<P: Scalar> Spherical<P> {
         let [up, east, north] = unit.map(|part| part * speed);
         let position = Vector3::new(radius, S::zero(), S::zero());
         let forces = &self.0;
+        let local = forces.local_air::<THESIS, _>(time, || place.position());
         match forces.wind::<THESIS, _>(altitude) {
             None => {
                 let still = Directions { speed, ..Directions::of(&position, &Vector3::new(up, east, north)) };
-                let flow = forces.flow_of::<THESIS, _>(altitude, still, speed, mass);
+                let flow = forces.flow_of::<THESIS, _>(altitude, local, still, speed, mass);
                 let (air, density) = (forces.air::<THESIS, _>(time, &flow), forces.density::<THESIS, _>(&flow));
                 let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
                 let (sin_sigma, cos_sigma) = forces.sin_cos_bank::<THESIS, _>(time, &flow);
@@ -173,7 +182,8 @@ impl<P: Scalar> Spherical<P> {
                 let fade = wind_fade((cos_phi * cos_phi).sqrt());
                 let [to_east, to_north] = wind.map(|part| part * fade);
                 let relative = Vector3::new(up, east - to_east, north - to_north);
-                let flow = forces.flow_of::<THESIS, _>(altitude, Directions::of(&position, &relative), speed, mass);
+                let flow =
+                    forces.flow_of::<THESIS, _>(altitude, local, Directions::of(&position, &relative), speed, mass);
                 let force = forces.aerodynamic::<THESIS, _>(time, &flow);
                 velocity.seen_along(force.into())
             }
