@@ -6,8 +6,9 @@ mod in_order;
 mod output;
 pub mod validate;
 
+use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::error::ContextValue;
@@ -22,12 +23,18 @@ use crate::cli::validate::Validate;
 use crate::config::Config;
 use crate::format::Format;
 use crate::router::document;
+use crate::space_weather::{self, Records};
 use crate::wire::shown::printable;
 
 /// Simulates atmospheric entry: trajectories, landing points, loads and heating.
 #[derive(Debug, Parser)]
 #[command(name = "reentry", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
+    /// File of space-weather indices for cases with `"indices": "file"`: SW-All.csv or SW-All.txt of CelesTrak, or
+    /// Kp_ap_Ap_SN_F107_since_1932.txt of the GFZ
+    #[arg(long, global = true, env = "REENTRY_SPACE_WEATHER", value_name = "FILE")]
+    pub space_weather: Option<PathBuf>,
+
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -192,6 +199,17 @@ impl Cli {
             error.exit()
         })
     }
+
+    /// Does what is asked, but for serving, which is given to `serve`.
+    ///
+    /// # Errors
+    /// With what is to be said, unless it has been, and the code with which to end.
+    pub fn run(self, serve: impl FnOnce(Config) -> Result<(), Failure>) -> Result<(), Failure> {
+        if let Some(path) = &self.space_weather {
+            use_space_weather(path)?;
+        }
+        self.command.run(serve)
+    }
 }
 
 impl Failure {
@@ -209,12 +227,19 @@ impl Failure {
     }
 }
 
+/// Reads the file of space-weather indices, for all cases that ask for it.
+///
+/// # Errors
+/// When it cannot be read, or has no such indices.
+fn use_space_weather(path: &Path) -> Result<(), Failure> {
+    let text = fs::read_to_string(path).map_err(|error| failure("read", path, error))?;
+    let wrong = |error| Failure::Setting(format!("--space-weather {}: {error}", path.display()));
+    let records = Records::parse(&text).map_err(wrong)?;
+    space_weather::install(records).map_err(|_| wrong("a file is in use already".to_owned()))
+}
+
 impl Command {
-    /// Does what is asked, but for serving, which is given to `serve`.
-    ///
-    /// # Errors
-    /// With what is to be said, unless it has been, and the code with which to end.
-    pub fn run(self, serve: impl FnOnce(Config) -> Result<(), Failure>) -> Result<(), Failure> {
+    fn run(self, serve: impl FnOnce(Config) -> Result<(), Failure>) -> Result<(), Failure> {
         match self {
             Self::Serve(config) => serve(*config),
             Self::Simulate { cases, format } => cases.run(format, answer::simulate),

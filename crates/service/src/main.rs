@@ -13,7 +13,7 @@ use reentry_service::telemetry::Log;
 use tokio::net::{TcpListener, TcpSocket};
 
 fn main() -> ExitCode {
-    let result = Cli::read().command.run(run);
+    let result = Cli::read().run(run);
     result.as_ref().err().map_or(ExitCode::SUCCESS, Failure::end)
 }
 

@@ -77,6 +77,10 @@ impl Bound {
     pub const FORCE: Self = Self::between(-1e12, 1e12);
     /// Specific impulses, s; that of light is 3.1e7.
     pub const SPECIFIC_IMPULSE: Self = Self::between(1e-3, 1e9);
+    /// Solar fluxes F10.7, solar flux units: observed ones are from 63 to 380, and the model has no sense far from them.
+    pub const SOLAR_FLUX: Self = Self::between(50.0, 500.0);
+    /// Indices ap of the geomagnetic activity, whose scale ends at 400.
+    pub const GEOMAGNETIC_AP: Self = Self::between(0.0, 400.0);
     /// Emissivities.
     pub const EMISSIVITY: Self = Self::above(0.0, 1.0);
     /// The relative tolerance of the integration.

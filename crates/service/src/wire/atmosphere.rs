@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use reentry::atmosphere::{Atmosphere as CoreAtmosphere, EARTH_JAMESON, Gas, Layer, Layers, Table};
+use reentry::atmosphere::nrlmsise00::{Ap, Nrlmsise00, SpaceWeather};
 use reentry::body::Body;
 use reentry::scenario::Bound;
 use serde_json::json;
 
 use super::description::{Object, Words, variant, word};
+use super::epoch::Epoch;
 use super::planet::PlanetModel;
 use super::reader::{MOST_ENTRIES, NumberOrList};
 
@@ -18,13 +20,15 @@ pub struct Atmosphere {
     pub core: CoreAtmosphere,
     /// The body whose standard atmosphere it is; none of other atmospheres.
     pub standard_of: Option<&'static Body>,
+    /// The indices that NRLMSISE-00 takes.
+    pub space_weather: Option<SpaceWeather>,
     /// For a flight away from the Earth: what of it is the Earth's, and the remedy; nothing where all of it was given.
     pub of_earth: Option<&'static str>,
 }
 
 impl Atmosphere {
     fn of(core: CoreAtmosphere) -> Self {
-        Self { core, standard_of: None, of_earth: None }
+        Self { core, standard_of: None, space_weather: None, of_earth: None }
     }
 
     fn of_earth(core: CoreAtmosphere, remedy: &'static str) -> Self {
@@ -37,6 +41,7 @@ impl Atmosphere {
             _ if self.standard_of.is_some() => "standard",
             CoreAtmosphere::Exponential { .. } => "exponential",
             CoreAtmosphere::Us76 => "us76",
+            CoreAtmosphere::Nrlmsise00(_) => "nrlmsise00",
             CoreAtmosphere::Layers(_) => "layered_exponential",
             CoreAtmosphere::Table(_) => "table",
             CoreAtmosphere::Vacuum => "vacuum",
@@ -45,7 +50,7 @@ impl Atmosphere {
 }
 
 /// The atmosphere.
-pub(super) fn atmosphere(object: &mut Object, planet: Option<PlanetModel>) -> Option<Atmosphere> {
+pub(super) fn atmosphere(object: &mut Object, planet: Option<PlanetModel>, epoch: Option<Epoch>) -> Option<Atmosphere> {
     object.named(
         "Atmosphere",
         "Atmosphere model. The air rotates with the planet; altitudes are along the radius vector.",
@@ -56,6 +61,12 @@ pub(super) fn atmosphere(object: &mut Object, planet: Option<PlanetModel>) -> Op
             variant("standard", "Standard", "Standard atmosphere of the planet.", &|object| standard(object, planet)),
             variant("exponential", "Exponential", "Density with one scale height.", &exponential),
             variant("us76", "U.S. Standard 1976", "U.S. Standard Atmosphere, 1976.", &us76),
+            variant(
+                "nrlmsise00",
+                "NRLMSISE-00",
+                "NRLMSISE-00, by place, time, solar flux and geomagnetic activity.",
+                &|object| nrlmsise00(object, epoch),
+            ),
             variant(
                 "layered_exponential",
                 "Layered exponential",
@@ -91,6 +102,87 @@ fn us76(object: &mut Object) -> Option<Atmosphere> {
         "U.S. Standard Atmosphere, 1976, from -5 to 1000 km: density, temperature, pressure and speed of sound.",
     );
     Some(Atmosphere::of_earth(CoreAtmosphere::Us76, "Atmosphere us76 is the Earth's: give that of the planet"))
+}
+
+/// The words for indices that the request does not give.
+const INDICES: Words<()> = Words {
+    name: "SpaceWeatherIndices",
+    doc: "Indices of the space weather.",
+    words: &[word("file", (), "From the file").doc(
+        "Those of the epoch, from the file that the service was started with; the geomagnetic activity with its history.",
+    )],
+};
+
+fn nrlmsise00(object: &mut Object, epoch: Option<Epoch>) -> Option<Atmosphere> {
+    const NUMBERS: [&str; 3] = ["f107", "f107_average", "ap"];
+    object.named(
+        "Nrlmsise00Atmosphere",
+        "NRLMSISE-00 model of the Earth's atmosphere from -5 to 1000 km: density, temperature, pressure and speed of \
+         sound by geodetic place and time. It requires an `epoch`.",
+    );
+    let indices = object
+        .field("indices", "Indices")
+        .doc("`file` takes the indices from the space-weather file of the service, in place of the numbers.")
+        .optional()
+        .word(&INDICES);
+    let from_file = object.has("indices");
+    object.condition(|| {
+        let numbers = NUMBERS.map(|name| json!({"required": [name]}));
+        json!({"dependentSchemas": {"indices": {"not": {"anyOf": numbers}}}})
+    });
+    if from_file {
+        for name in NUMBERS {
+            if object.has(name) {
+                object.fault_of(name, "must not be given together with indices");
+            }
+        }
+        indices?;
+        let space_weather = crate::space_weather::at(epoch?);
+        return match space_weather {
+            Ok(space_weather) => Some(of_space_weather(epoch?, space_weather)),
+            Err(detail) => {
+                object.fault_of("indices", format!("\"file\" {detail}"));
+                None
+            }
+        };
+    }
+    let medium = SpaceWeather::MEDIUM;
+    let mut flux = |name, title, doc, default: f64| {
+        object.field(name, title).doc(doc).default(default).number(Bound::SOLAR_FLUX)
+    };
+    let f107 = flux(
+        "f107",
+        "F10.7",
+        "Solar flux F10.7 of the day before, as observed, in solar flux units of 1e-22 W/(m² Hz).",
+        medium.f107,
+    );
+    let f107_average = flux(
+        "f107_average",
+        "Mean F10.7",
+        "Mean of F10.7 over 81 days around the day, in solar flux units.",
+        medium.f107_average,
+    );
+    let ap = object
+        .field("ap", "Ap")
+        .doc(
+            "Index Ap of the geomagnetic activity: the mean of the day, or a list of seven: the mean of the day; ap of \
+             the three hours of the epoch, and of 3, 6 and 9 hours before; the means from 12 to 33 and from 36 to 57 \
+             hours before.",
+        )
+        .default(4.0)
+        .number_or_numbers(Bound::GEOMAGNETIC_AP, [7, 7]);
+    let ap = match ap? {
+        NumberOrList::Number(daily) => Ap::Daily(daily),
+        NumberOrList::List(list) => Ap::History(list.try_into().ok()?),
+    };
+    Some(of_space_weather(epoch?, SpaceWeather { f107: f107?, f107_average: f107_average?, ap }))
+}
+
+fn of_space_weather(epoch: Epoch, space_weather: SpaceWeather) -> Atmosphere {
+    let (day_of_year, second) = epoch.day_of_year();
+    let model = CoreAtmosphere::Nrlmsise00(Arc::new(Nrlmsise00::new(day_of_year, second, space_weather)));
+    let remedy = "Atmosphere nrlmsise00 is the Earth's: give that of the planet";
+    Atmosphere { space_weather: Some(space_weather), ..Atmosphere::of_earth(model, remedy) }
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "the descriptions of objects have one type")]

@@ -283,6 +283,11 @@ impl<'a, 'b> Object<'a, 'b> {
         self.reader().is_some_and(|reader| reader.has(name))
     }
 
+    /// Whether a field, given by its path, has the word.
+    pub fn has_word(&mut self, path: &str, word: &str) -> bool {
+        self.reader().is_some_and(|reader| reader.has_word(path, word))
+    }
+
     /// Notes a fault of this object as a whole.
     pub fn fault<T>(&mut self, detail: impl Into<String>) -> Option<T> {
         self.reader().and_then(|reader| reader.fault(detail))

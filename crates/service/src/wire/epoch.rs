@@ -73,6 +73,12 @@ fn clock_seconds(clock: &str) -> Option<f64> {
     (sound && sum.is_finite()).then_some(sum)
 }
 
+/// The day since 2000 January 1 of a year, month and day in digits; none where the calendar has no such day.
+pub fn day_of(year: &str, month: &str, day: &str) -> Option<i64> {
+    let number = |text: &str| text.trim().parse().ok();
+    Date { year: number(year)?, month: number(month)?, day: number(day)? }.since_2000()
+}
+
 /// The instant t = 0.
 ///
 /// It is kept to the nanosecond, in which the Earth turns by less than 1e-13 rad; further digits are dropped.
@@ -159,6 +165,25 @@ impl Epoch {
     /// than 0.9 s.
     pub fn earth_rotation_angle(self) -> f64 {
         earth_rotation_angle(self.days())
+    }
+
+    /// The day of UTC since 2000 January 1, and its second.
+    pub fn day_and_second_of_day(self) -> (i64, i64) {
+        (self.day, self.second)
+    }
+
+    /// The day of its year in UTC, from 1, and the seconds of that day.
+    pub fn day_of_year(self) -> (u16, f64) {
+        let first = Date { year: self.year(), month: 1, day: 1 }.since_2000().unwrap_or(self.day);
+        let day = u16::try_from(self.day - first + 1).unwrap_or(1);
+        #[expect(clippy::cast_precision_loss, reason = "less than 86 401")]
+        let second = self.second as f64;
+        (day, second + f64::from(self.nanosecond) * 1e-9)
+    }
+
+    /// The date of a day since 2000 January 1, as text.
+    pub fn of_day(day: i64) -> Option<String> {
+        Date::after_2000(day).map(|Date { year, month, day }| format!("{year:04}-{month:02}-{day:02}"))
     }
 
     /// The year in UTC.

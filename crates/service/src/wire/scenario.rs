@@ -17,6 +17,7 @@ use super::heating::{Heating, heating};
 use super::numbers::{MOST_VARIED, Numbers};
 use super::planet::{Planet, PlanetModel, planet};
 use super::reader::Fault;
+use super::schema::is;
 use super::sensitivities::{RequestedSensitivities, asked};
 use super::shown::shown;
 use super::state::{State, inertial_conditions, state};
@@ -179,7 +180,7 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         "Time of t = 0 in RFC 3339 format. It defines the angle between the inertial and the planet-fixed frame, \
          unless the state gives that angle. On a custom planet it only dates the flight.",
     );
-    let (planet, atmosphere, density_factor, wind) = environment(object);
+    let (planet, atmosphere, density_factor, wind) = environment(object, epoch);
     let vehicle = object
         .field("vehicle", "Vehicle")
         .doc("Vehicle: mass, reference area, aerodynamics and nose radius.")
@@ -268,7 +269,10 @@ fn analyses(object: &mut Object) -> (Option<RequestedSensitivities>, Option<Vec<
 }
 
 /// Where it flies.
-fn environment(object: &mut Object) -> (Option<Planet>, Option<Atmosphere>, Option<f64>, Option<Wind>) {
+fn environment(
+    object: &mut Object,
+    epoch: Option<Epoch>,
+) -> (Option<Planet>, Option<Atmosphere>, Option<f64>, Option<Wind>) {
     let planet =
         object.field("planet", "Planet").doc("Planet: shape, gravity and rotation.").default(json!({})).object(planet);
     let model = planet.map(|planet| planet.model);
@@ -282,7 +286,14 @@ fn environment(object: &mut Object) -> (Option<Planet>, Option<Atmosphere>, Opti
              for new cases on the Earth.",
         )
         .optional()
-        .object(|object| atmosphere(object, model));
+        .object(|object| atmosphere(object, model, epoch));
+    // Of an epoch that is at fault, that fault alone is told.
+    if object.has_word("atmosphere/type", "nrlmsise00") && !object.has("epoch") {
+        object.fault_of("epoch", "is required: atmosphere nrlmsise00 depends on the time");
+    }
+    object.condition(|| {
+        json!({"if": is("atmosphere/type", "nrlmsise00"), "then": {"required": ["epoch"]}})
+    });
     let density_factor = object
         .field("density_factor", "Density factor")
         .doc("Factor on the density of the atmosphere model; 1.2 means 20 % denser air.")

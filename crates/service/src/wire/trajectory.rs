@@ -1,5 +1,6 @@
 //! The answer of `/simulate`.
 
+use reentry::atmosphere::nrlmsise00::{Ap, SpaceWeather};
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{
     self, EventPoint, FlightPhase, FlightPoint, HeatingPeaks, Peaks as CorePeaks, PhaseStart,
@@ -146,12 +147,41 @@ pub struct Models {
     pub shape: &'static str,
     /// Type of the atmosphere.
     pub atmosphere: &'static str,
+    /// Indices that `nrlmsise00` took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub space_weather: Option<SpaceWeatherReport>,
     /// Type of the gravity.
     pub gravity: &'static str,
     /// Type of the aerodynamics at the start.
     pub aerodynamics: &'static str,
     /// Type of the wind; `still` if the air rotates with the planet.
     pub wind: &'static str,
+}
+
+/// Indices of the space weather.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct SpaceWeatherReport {
+    /// Solar flux F10.7 of the day before, solar flux units.
+    pub f107: f64,
+    /// Mean of F10.7 over 81 days, solar flux units.
+    pub f107_average: f64,
+    /// Mean Ap of the day.
+    pub ap: f64,
+    /// History of ap, if it was taken: the seven numbers that a case may give as `ap`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub ap_history: Option<[f64; 7]>,
+}
+
+impl From<SpaceWeather> for SpaceWeatherReport {
+    fn from(SpaceWeather { f107, f107_average, ap }: SpaceWeather) -> Self {
+        let (ap, ap_history) = match ap {
+            Ap::Daily(ap) => (ap, None),
+            Ap::History(history) => (history[0], Some(history)),
+        };
+        Self { f107, f107_average, ap, ap_history }
+    }
 }
 
 /// Settings and statistics of the numerical integration.
@@ -301,6 +331,7 @@ impl SimulateResponse {
                 planet: MODELS.of(request.planet.model),
                 shape: request.planet.shape(),
                 atmosphere: request.atmosphere.kind(),
+                space_weather: request.atmosphere.space_weather.map(SpaceWeatherReport::from),
                 gravity: request.planet.gravity(),
                 aerodynamics: vehicle::kind(&request.vehicle.aerodynamics),
                 wind: request.wind.kind(),

@@ -168,7 +168,7 @@ impl Warning {
                 ("wind_faded_near_pole", detail)
             }
             trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
-                let code = if table == TableId::Us76 { "outside_model" } else { "outside_table" };
+                let code = if matches!(table, TableId::Us76 | TableId::Nrlmsise00) { "outside_model" } else { "outside_table" };
                 (code, outside(table, edge, above, unit, &format!("from {}, at {}", seconds(time), length(altitude))))
             }
             trajectory::Warning::OutsideRange {
@@ -296,6 +296,11 @@ fn outside(table: TableId, edge: f64, above: bool, unit: AngleUnit, since: &str)
                 "its lowest layer is continued"
             };
             format!("Atmosphere us76 {ends} at {}: {beyond} it {holds} ({since})", length(edge))
+        }
+        TableId::Nrlmsise00 => {
+            let holds =
+                if above { "its formulas are continued" } else { "the air has the temperature at that altitude" };
+            format!("Atmosphere nrlmsise00 {ends} at {}: {beyond} it {holds} ({since})", length(edge))
         }
         TableId::Wind => {
             let edge = length(edge);
