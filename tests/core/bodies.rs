@@ -21,7 +21,7 @@ fn air(atmosphere: &Atmosphere, altitude: f64) -> [f64; 4] {
 #[test]
 fn every_body_has_air_but_the_moon() {
     assert_eq!(BODIES.len(), 8);
-    for body in &BODIES {
+    for body in BODIES {
         let has_table = matches!(body.atmosphere(), Atmosphere::Table(_));
         assert_eq!(has_table, body.name != "moon", "{}", body.name);
         assert_eq!(has_table, body.source_of_atmosphere().is_some());

@@ -15,6 +15,7 @@ mod ground_track;
 mod heating;
 mod integrator;
 mod model_modes;
+mod nrlmsise00;
 mod number_types;
 mod parachutes;
 mod phases;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use num_dual::Dual64;
 use proptest::prelude::*;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
@@ -428,4 +429,15 @@ fn what_is_undefined_has_no_slope() {
 fn the_flag_ends_the_sensitivities_as_well() {
     let interrupted = sensitivity::sensitivities(&fly(&target_2()), &AtomicBool::new(true));
     assert!(matches!(interrupted, Err(reentry::simulate::SimulationError::Interrupted { .. })));
+}
+
+/// d atan2(y, x) = (x dy - y dx)/(x² + y²), also where x is 0, by which dual numbers would divide.
+#[test]
+fn the_angle_of_a_point_has_a_slope_on_every_axis() {
+    for (y, x) in [(2.0_f64, 0.0_f64), (-2.0, 0.0), (0.0, 3.0), (0.0, -3.0), (1.0, 2.0), (-1.0, -2.0)] {
+        let [dy, dx] = [0.7, -0.4];
+        let angle = Scalar::atan2(Dual64::new(y, dy), Dual64::new(x, dx));
+        assert_eq!(angle.re.to_bits(), y.atan2(x).to_bits());
+        near("slope", angle.eps, (x * dy - y * dx) / (x * x + y * y), 1e-15);
+    }
 }

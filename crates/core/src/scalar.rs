@@ -145,6 +145,11 @@ where
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
+        if x.re() == 0.0 && self.re() != 0.0 {
+            // Dual numbers divide by x: the slope is that of π/2 less the angle with the axes exchanged.
+            let exchanged = DualNum::atan2(&x, self);
+            return Self::from(self.re().atan2(x.re())) - (exchanged - exchanged.re());
+        }
         DualNum::atan2(&self, x)
     }
 }

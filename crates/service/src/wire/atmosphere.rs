@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use reentry::atmosphere::{Atmosphere as CoreAtmosphere, EARTH_JAMESON, Gas, Layer, Layers, Table};
 use reentry::atmosphere::nrlmsise00::{Ap, Nrlmsise00, SpaceWeather};
+use reentry::atmosphere::{Atmosphere as CoreAtmosphere, EARTH_JAMESON, Gas, Layer, Layers, Table};
 use reentry::body::Body;
 use reentry::scenario::Bound;
 use serde_json::json;
@@ -147,9 +147,8 @@ fn nrlmsise00(object: &mut Object, epoch: Option<Epoch>) -> Option<Atmosphere> {
         };
     }
     let medium = SpaceWeather::MEDIUM;
-    let mut flux = |name, title, doc, default: f64| {
-        object.field(name, title).doc(doc).default(default).number(Bound::SOLAR_FLUX)
-    };
+    let mut flux =
+        |name, title, doc, default: f64| object.field(name, title).doc(doc).default(default).number(Bound::SOLAR_FLUX);
     let f107 = flux(
         "f107",
         "F10.7",

@@ -291,9 +291,7 @@ fn environment(
     if object.has_word("atmosphere/type", "nrlmsise00") && !object.has("epoch") {
         object.fault_of("epoch", "is required: atmosphere nrlmsise00 depends on the time");
     }
-    object.condition(|| {
-        json!({"if": is("atmosphere/type", "nrlmsise00"), "then": {"required": ["epoch"]}})
-    });
+    object.condition(|| json!({"if": is("atmosphere/type", "nrlmsise00"), "then": {"required": ["epoch"]}}));
     let density_factor = object
         .field("density_factor", "Density factor")
         .doc("Factor on the density of the atmosphere model; 1.2 means 20 % denser air.")

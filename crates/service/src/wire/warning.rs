@@ -168,7 +168,11 @@ impl Warning {
                 ("wind_faded_near_pole", detail)
             }
             trajectory::Warning::OutsideTable { table, time, altitude, edge, above } => {
-                let code = if matches!(table, TableId::Us76 | TableId::Nrlmsise00) { "outside_model" } else { "outside_table" };
+                let code = if matches!(table, TableId::Us76 | TableId::Nrlmsise00) {
+                    "outside_model"
+                } else {
+                    "outside_table"
+                };
                 (code, outside(table, edge, above, unit, &format!("from {}, at {}", seconds(time), length(altitude))))
             }
             trajectory::Warning::OutsideRange {
