@@ -36,6 +36,7 @@ fn main() {
     right_hand_sides();
     changes_of_formula();
     layers();
+    upper_air();
     heating_and_events();
     number_types();
 }
@@ -193,6 +194,49 @@ fn layers() {
         {
             let miss = (state.position - exact.state.position - exact.state.velocity * delay).norm();
             println!("| {what} | {tolerance:e} | {evaluations} | {steps} | {rejected_steps} | {miss:.1e} m |");
+        }
+    }
+}
+
+/// Flights in NRLMSISE-00, beside the same in the standard atmosphere.
+fn upper_air() {
+    println!("\n| flight | air | right-hand sides | steps | rejected | off by | integration and events |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let from = |altitude: f64, speed: f64, angle: f64, [area, lift, drag]: [f64; 3]| {
+        json!({
+            "epoch": "2026-11-29T12:00:00Z",
+            "vehicle": {"mass": 2000, "reference_area": area,
+                "aerodynamics": {"type": "constant", "lift_coefficient": lift, "drag_coefficient": drag}},
+            "initial_state": {"type": "planet_relative", "altitude": altitude, "longitude": 0.3, "geocentric_latitude": 0.5,
+                "speed": speed, "flight_path_angle": angle, "heading": 0.7},
+        })
+    };
+    for (name, request) in [
+        ("a lifting capsule", from(120e3, 7500.0, -0.026, [4.5, 0.35, 1.25])),
+        ("a ballistic one", from(120e3, 7500.0, -0.052, [4.5, 0.0, 1.25])),
+        ("a sample return", from(125e3, 11_900.0, -0.14, [30.0, 0.0, 1.2])),
+        ("debris", from(120e3, 7600.0, -0.009, [10.0, 0.0, 1.0])),
+        ("a stage", from(200e3, 7550.0, -0.012, [10.0, 0.0, 1.0])),
+    ] {
+        let [standard, model] = ["us76", "nrlmsise00"].map(|air| {
+            let mut request = request.clone();
+            request["atmosphere"] = json!({"type": air});
+            job(&request).scenario
+        });
+        let times = micros([
+            &mut timed(|| arrival(black_box(&standard), &NEVER)),
+            &mut timed(|| arrival(black_box(&model), &NEVER)),
+        ]);
+        for ((air, scenario), time) in [("us76", &standard), ("nrlmsise00", &model)].into_iter().zip(times) {
+            let arrival = |relative_tolerance: f64| {
+                let case = scenario.case().clone();
+                let case = Case { solver: Solver { relative_tolerance, ..case.solver }, ..case };
+                reentry::simulate::arrival(&Scenario::new(case).unwrap(), &NEVER).unwrap()
+            };
+            let [flown, fine] = [1e-10, 1e-13].map(arrival);
+            let miss = (flown.state.position - fine.state.position).norm();
+            let Statistics { steps, rejected_steps, evaluations } = flown.statistics;
+            println!("| {name} | {air} | {evaluations} | {steps} | {rejected_steps} | {miss:.1e} m | {time:.0} µs |");
         }
     }
 }

@@ -21,6 +21,7 @@ use crate::cli::healthcheck::Healthcheck;
 use crate::cli::output::Output;
 use crate::cli::validate::Validate;
 use crate::config::Config;
+use crate::endpoints::planets::Planets;
 use crate::format::Format;
 use crate::router::document;
 use crate::space_weather::{self, Records};
@@ -81,6 +82,8 @@ pub enum Command {
     /// Run the built-in reference cases and print expected and computed values: the JSON of GET /validation
     #[command(after_help = [VALIDATE_EXAMPLES, EXIT_CODES].concat())]
     Validate(Validate),
+    /// List the planets that a case may name, with their numbers and sources: the JSON of GET /planets
+    Planets,
     /// Check whether the service on this machine is running; for containers without another HTTP client
     Healthcheck(Healthcheck),
     /// Print the OpenAPI document
@@ -249,6 +252,10 @@ impl Command {
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;
                 print(b"ok\n")
+            }
+            Self::Planets => {
+                let planets = Planets::all().and_then(|planets| serde_json::to_string_pretty(&planets));
+                print(format!("{}\n", planets.map_err(io::Error::from)?).as_bytes())
             }
             Self::Openapi => print(format!("{:#}\n", document()).as_bytes()),
             Self::Completions { shell } => {

@@ -94,8 +94,8 @@ impl Records {
     }
 
     /// The indices of an instant: F10.7 of the day before; its mean over 81 days; and the history of ap, or the mean of the day where the
-    /// file has no more.
-    fn at(&self, epoch: Epoch) -> Option<SpaceWeather> {
+    /// file has no more. None where it does not have them all.
+    pub fn at(&self, epoch: Epoch) -> Option<SpaceWeather> {
         let (day, second) = epoch.day_and_second_of_day();
         let flux = |day: i64| self.0.get(&day)?.f107;
         let fluxes: Option<Vec<f64>> = (day - HALF_MEAN..=day + HALF_MEAN).map(flux).collect();
@@ -128,6 +128,11 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|number: &f64| *number >= 0.0)
 }
 
+/// A solar flux that is not a mark for none.
+fn flux(text: &str) -> Option<f64> {
+    number(text).filter(|flux| *flux > 0.0)
+}
+
 /// All of some numbers.
 fn all<const N: usize>(texts: &[&str]) -> Option<[f64; N]> {
     let numbers: Option<Vec<f64>> = texts.iter().map(|text| number(text)).collect();
@@ -139,7 +144,7 @@ fn of_csv(line: &str) -> Option<(i64, Record)> {
     let fields: Vec<&str> = line.split(',').collect();
     let [year, month, date] = fields.first()?.split('-').collect::<Vec<_>>().try_into().ok()?;
     let record =
-        Record { ap: all(fields.get(12..20)?), daily_ap: number(fields.get(20)?), f107: number(fields.get(24)?) };
+        Record { ap: all(fields.get(12..20)?), daily_ap: number(fields.get(20)?), f107: flux(fields.get(24)?) };
     Some((day_of(year, month, date)?, record))
 }
 
@@ -147,7 +152,7 @@ fn of_csv(line: &str) -> Option<(i64, Record)> {
 fn of_fixed_columns(line: &str) -> Option<(i64, Record)> {
     let column = |first: usize, last: usize| line.get(first - 1..last.min(line.len()));
     let ap: Option<Vec<&str>> = (0..8).map(|interval| column(47 + 4 * interval, 50 + 4 * interval)).collect();
-    let record = Record { ap: all(&ap?), daily_ap: number(column(79, 82)?), f107: number(column(113, 118)?) };
+    let record = Record { ap: all(&ap?), daily_ap: number(column(79, 82)?), f107: flux(column(113, 118)?) };
     Some((day_of(column(1, 4)?, column(6, 7)?, column(9, 10)?)?, record))
 }
 
@@ -156,6 +161,6 @@ fn of_gfz(line: &str) -> Option<(i64, Record)> {
     let fields: Vec<&str> = line.split_whitespace().collect();
     let [year, month, date] = fields.get(..3)? else { return None };
     let record =
-        Record { ap: all(fields.get(15..23)?), daily_ap: number(fields.get(23)?), f107: number(fields.get(25)?) };
+        Record { ap: all(fields.get(15..23)?), daily_ap: number(fields.get(23)?), f107: flux(fields.get(25)?) };
     Some((day_of(year, month, date)?, record))
 }

@@ -34,8 +34,9 @@ const AVOGADRO: f64 = 6.022_140_76e23;
 /// A day, s.
 const DAY: f64 = 86_400.0;
 
-/// The altitudes, m, at which the model begins, at which its density jumps by more than 1e-3, and at which it ends.
-pub(super) const BOUNDARIES: [f64; 4] = [BOTTOM, 72.5e3, 123.435e3, TOP];
+/// The altitudes, m, at which the model begins and ends. Between them its density jumps by up to 1.5e-3, at 72.5 and at 123.435 km; to meet
+/// these boundaries makes flights no more exact, and takes as many evaluations.
+pub(super) const BOUNDARIES: [f64; 2] = [BOTTOM, TOP];
 
 /// What the Sun does to the upper air.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -152,15 +152,28 @@ struct AtmosphereTable {
     responses((status = 200, description = "All planets, with the numbers of their models.", body = Planets)),
 )]
 pub async fn planets() -> Result<Json<Planets>, ApiError> {
-    let earths = [
-        (PlanetModel::EarthWgs84, Planet::EARTH_WGS84, "WGS 84, NIMA TR8350.2 (2000), tables 3.1 and 3.3"),
-        (PlanetModel::EarthJamesonListing, Planet::EARTH_JAMESON_LISTING, "Jameson, AFIT 2006, program listing"),
-        (PlanetModel::EarthJamesonText, Planet::EARTH_JAMESON_TEXT, "Jameson, AFIT 2006, equations 32 to 35 and 42"),
-    ];
-    let earths = earths.map(|(model, planet, source)| earth(model, &planet, source));
-    let bodies = BODIES.iter().map(|body| serde_json::from_str(body.source));
-    let planets = earths.into_iter().map(Ok).chain(bodies).collect::<Result<_, _>>();
-    Ok(Json(Planets { planets: planets.map_err(|_| ApiError::Internal)? }))
+    Planets::all().map(Json).map_err(|_| ApiError::Internal)
+}
+
+impl Planets {
+    /// The Earths, and the bodies by their files.
+    ///
+    /// # Errors
+    /// When the file of a body has not the form of the others.
+    pub fn all() -> Result<Self, serde_json::Error> {
+        let earths = [
+            (PlanetModel::EarthWgs84, Planet::EARTH_WGS84, "WGS 84, NIMA TR8350.2 (2000), tables 3.1 and 3.3"),
+            (PlanetModel::EarthJamesonListing, Planet::EARTH_JAMESON_LISTING, "Jameson, AFIT 2006, program listing"),
+            (
+                PlanetModel::EarthJamesonText,
+                Planet::EARTH_JAMESON_TEXT,
+                "Jameson, AFIT 2006, equations 32 to 35 and 42",
+            ),
+        ];
+        let earths = earths.into_iter().map(|(model, planet, source)| Ok(earth(model, &planet, source)));
+        let bodies = BODIES.iter().map(|body| serde_json::from_str(body.source));
+        Ok(Self { planets: earths.chain(bodies).collect::<Result<_, _>>()? })
+    }
 }
 
 fn earth(model: PlanetModel, planet: &Planet, source: &str) -> NamedPlanet {
