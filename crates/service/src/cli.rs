@@ -31,8 +31,8 @@ use crate::wire::shown::printable;
 #[derive(Debug, Parser)]
 #[command(name = "reentry", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
-    /// File of space-weather indices for cases with `"indices": "file"`: SW-All.csv or SW-All.txt of CelesTrak, or
-    /// Kp_ap_Ap_SN_F107_since_1932.txt of the GFZ
+    /// File of space-weather indices for cases with `"indices": "file"`: `SW-All.csv` or `SW-All.txt` of CelesTrak, or
+    /// `Kp_ap_Ap_SN_F107_since_1932.txt` of the GFZ
     #[arg(long, global = true, env = "REENTRY_SPACE_WEATHER", value_name = "FILE")]
     pub space_weather: Option<PathBuf>,
 
