@@ -34,6 +34,7 @@ mod reference;
 mod sensitivities;
 mod sidereal_time;
 mod simulate;
+mod sites;
 mod space_weather;
 mod surface;
 mod times;

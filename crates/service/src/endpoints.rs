@@ -15,4 +15,5 @@ pub mod metrics;
 pub mod page;
 pub mod planets;
 pub mod simulate;
+pub mod sites;
 pub mod validation;

@@ -67,13 +67,21 @@ impl Format {
     /// # Errors
     /// When the request accepts none of them, or its query string has anything but `format`.
     pub fn negotiate(parts: &Parts, offered: &[Self]) -> Result<Self, ApiError> {
+        let Query(query) = Query::<Vec<(String, String)>>::try_from_uri(&parts.uri)
+            .map_err(|rejection| ApiError::BadQuery(rejection.body_text()))?;
+        Self::negotiate_beside(parts, offered, &query)
+    }
+
+    /// The same, with the query string as far as the endpoint has no parameter of the name.
+    ///
+    /// # Errors
+    /// When the request accepts none of them, or the query has anything but `format`.
+    pub fn negotiate_beside(parts: &Parts, offered: &[Self], query: &[(String, String)]) -> Result<Self, ApiError> {
         let not_acceptable = |asked: &str| ApiError::NotAcceptable {
             offered: offered.iter().map(|format| format.name()).collect::<Vec<_>>().join(" or "),
             asked: asked.to_owned(),
         };
-        let Query(query) = Query::<Vec<(String, String)>>::try_from_uri(&parts.uri)
-            .map_err(|rejection| ApiError::BadQuery(rejection.body_text()))?;
-        match &query[..] {
+        match query {
             [] => accepted(&parts.headers, offered).ok_or_else(|| {
                 let accept = parts.headers.get(header::ACCEPT).and_then(|value| value.to_str().ok());
                 not_acceptable(accept.unwrap_or("something unreadable"))

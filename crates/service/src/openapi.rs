@@ -48,12 +48,13 @@ schemas `x-unit` is the unit of a field, `angle` for the one of `angle_unit`.
 `type` answers a page that says what to do, as does `/warnings/CODE` for the warnings of an answer.";
 
 /// The paths in the order in which a reader needs them.
-const ORDER: [&str; 9] = [
+const ORDER: [&str; 10] = [
     "/simulate",
     "/simulate/batch",
     "/convert",
     "/analytic",
     "/planets",
+    "/sites",
     "/validation",
     "/health/live",
     "/health/ready",
@@ -102,6 +103,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
             ("/analytic", "post", json!(["json", "csv"])),
             ("/simulate/batch", "post", json!(["ndjson"])),
             ("/convert", "post", json!(["json"])),
+            ("/sites", "get", json!(["json", "csv", "geojson"])),
             ("/validation", "get", json!(["json"])),
         ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut(method)) {

@@ -13,7 +13,9 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::config::Origins;
-use crate::endpoints::{analytic, batch, convert, docs, guide, health, metrics, page, planets, simulate, validation};
+use crate::endpoints::{
+    analytic, batch, convert, docs, guide, health, metrics, page, planets, simulate, sites, validation,
+};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, check_head, limit, observe, protect};
 use crate::openapi::{self, Document};
@@ -28,6 +30,7 @@ fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(convert::convert))
         .routes(routes!(analytic::analytic))
         .routes(routes!(planets::planets))
+        .routes(routes!(sites::sites))
         .routes(routes!(validation::validation))
         .routes(routes!(health::live))
         .routes(routes!(health::ready))

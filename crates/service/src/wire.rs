@@ -9,6 +9,7 @@ pub mod json;
 pub mod reader;
 pub mod schema;
 pub mod shown;
+pub mod sites;
 
 pub mod atmosphere;
 pub mod control;

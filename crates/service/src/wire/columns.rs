@@ -77,6 +77,8 @@ pub struct AvailableQuantities {
     pub thrust: bool,
     /// Where it flies.
     pub planet: Planet,
+    /// Whether that is an Earth.
+    pub is_on_earth: bool,
     /// By which the planet is turned from the inertial frame of date at t = 0, rad.
     pub sidereal_angle: f64,
 }

@@ -190,7 +190,7 @@ impl Dispersion {
 
     /// The outputs of which the slopes are needed: those of the site of the end, and the final columns.
     pub fn outputs(known: AvailableQuantities, flight: &Trajectory) -> Vec<FlightOutput> {
-        let site = FlightOutput::Site(ground_point(&flight.last()));
+        let site = FlightOutput::Site { site: ground_point(&flight.last()), is_listed: false };
         let end = |column| FlightOutput::Quantity { column, at: At::Moment(Moment::End) };
         std::iter::once(site).chain(Self::columns(known).map(end)).collect()
     }

@@ -13,6 +13,7 @@ use super::columns::{AvailableQuantities, COLUMNS, Column};
 use super::description::{Object, WordOrObject, Words, word};
 use super::events::Event;
 use super::reader::Fault;
+use super::sites::{ListedSite, slug_schema};
 
 /// An output that a request names.
 #[derive(Clone, Debug)]
@@ -25,7 +26,12 @@ pub enum FlightOutput {
         at: At,
     },
     /// Where the flight ends relative to a site: metres east and north of it.
-    Site(Site),
+    Site {
+        /// Its place.
+        site: Site,
+        /// Whether the request gives it by the slug of a site of the Earth.
+        is_listed: bool,
+    },
 }
 
 /// When an output is taken.
@@ -103,6 +109,10 @@ const SIDES: Words<bool> = Words {
     ],
 };
 
+/// A site by its slug or by its place.
+const SITE: WordOrObject =
+    WordOrObject { name: "NamedOrGivenSite", doc: "Site by its slug, or by longitude and latitude." };
+
 /// An output of a request.
 pub(super) fn output(object: &mut Object) -> Option<FlightOutput> {
     object.named(
@@ -152,7 +162,16 @@ fn at_time(object: &mut Object) -> Option<At> {
 }
 
 fn at_site(object: &mut Object) -> Option<FlightOutput> {
-    object.field("site", "Site").doc("Site on the planet's surface.").object(site).map(FlightOutput::Site)
+    object
+        .field("site", "Site")
+        .doc("Site on the planet's surface: its slug in `GET /sites`, or its longitude and latitude.")
+        .text_or(
+            &SITE,
+            slug_schema,
+            |slug| ListedSite::read(slug).map(|site| (site.place(), true)),
+            |object| Some((site(object)?, false)),
+        )
+        .map(|(site, is_listed)| FlightOutput::Site { site, is_listed })
 }
 
 fn site(object: &mut Object) -> Option<Site> {
@@ -168,7 +187,14 @@ fn site(object: &mut Object) -> Option<Site> {
 impl FlightOutput {
     /// What is wrong with an output of a request, given at a pointer, if anything.
     pub(super) fn fault(&self, pointer: &str, known: AvailableQuantities, events: &[Event]) -> Option<Fault> {
-        let Self::Quantity { column, at } = self else { return None };
+        let (column, at) = match self {
+            Self::Quantity { column, at } => (column, at),
+            Self::Site { is_listed: true, .. } if !known.is_on_earth => {
+                let detail = "must be a longitude and a latitude on a planet other than the Earth, where the sites of GET /sites are";
+                return Some(Fault::new(format!("{pointer}/site"), detail));
+            }
+            Self::Site { .. } => return None,
+        };
         if let Some(missing) = column.missing(known) {
             return Some(Fault::new(format!("{pointer}/quantity"), format!("{} requires {missing}", column.name)));
         }
@@ -197,7 +223,7 @@ impl FlightOutput {
                 let value = move |point: &FlightPoint, moved| column.number(point, unit, known.of(moved));
                 vec![OutputNumber { name: column.name, at, turn, value: Box::new(value) }]
             }
-            Self::Site(site) => {
+            Self::Site { site, .. } => {
                 let shape = known.flight.planet.shape;
                 let number = |name, east_or_north: usize, site: Site| {
                     let value =

@@ -521,6 +521,7 @@ impl SimulateRequest {
             changing_mass: self.events.iter().any(Event::changes_mass),
             thrust: self.events.iter().any(Event::changes_thrust),
             planet: self.planet.core,
+            is_on_earth: self.planet.is_earth(),
             sidereal_angle: self.initial_state.sidereal_angle(self.epoch, self.angle_unit, &self.planet),
         }
     }

@@ -346,6 +346,32 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
         )
     }
 
+    /// Text with a reader and a schema of its own, or an object.
+    pub fn text_or<T>(
+        self,
+        union: &WordOrObject,
+        schema: impl FnOnce() -> Value,
+        from_text: impl Fn(&str) -> Result<T, String>,
+        read: impl Fn(&mut Object) -> Option<T>,
+    ) -> Option<T> {
+        self.take(
+            |object| {
+                let text = schema();
+                let described = described(object, &read);
+                object.component(union.name, json!({"oneOf": [described, text], "description": union.doc}))
+            },
+            |reader, name| match reader.required(name)? {
+                Value::Object(_) => reader.object(name, |object| reading(object, &read)),
+                Value::String(_) => reader.value(name, |value| from_text(value.as_str().unwrap_or_default())),
+                other => {
+                    let detail = format!("must be a string or an object, got {}", reader::kind_of(other));
+                    reader.fault_of(name, detail);
+                    None
+                }
+            },
+        )
+    }
+
     /// True or false, or an object.
     pub fn boolean_or<T>(
         self,
