@@ -2,8 +2,10 @@
 
 use std::f64::consts::{E, FRAC_PI_2, PI};
 
+use num_dual::Dual64;
+use reentry::body::BODIES;
 use reentry::heating::{Convective, Heating, Radiative, STEFAN_BOLTZMANN, SUTTON_GRAVES_AIR, Stagnation};
-use reentry::heating::{chapman, detra_kemp_riddell, sutton_graves, tauber_sutton};
+use reentry::heating::{chapman, craig_lyne, detra_kemp_riddell, sutton_graves, tauber_sutton, tauber_sutton_mars};
 use reentry::trajectory::{FlightPoint, HeatingPeaks, Sampling, Warning};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle};
 
@@ -311,4 +313,153 @@ fn without_air_or_speed_there_is_no_heat() {
         );
         assert!([at_rest.total().re, at_rest.total().eps].iter().all(|number| number.to_bits() == 0));
     }
+}
+
+/// Each entry of the table of Mars, as programs that read the paper have it, by a tenth of a kilometre per second and tenths of f; on a nose of 1 m
+/// the power of the radius is 1.
+#[test]
+fn tauber_and_sutton_give_the_radiation_at_mars() {
+    let f = |segment: usize, speed: f64| tauber_sutton_mars(segment, 1e-3, speed, 1.0) / (2.35e8 * 1e-3_f64.powf(1.19));
+    let entries = [
+        (6000.0, 0.2),
+        (6150.0, 1.0),
+        (6300.0, 1.95),
+        (6500.0, 3.42),
+        (6700.0, 5.1),
+        (6900.0, 7.1),
+        (7000.0, 8.1),
+        (7200.0, 10.2),
+        (7400.0, 12.5),
+        (7600.0, 14.8),
+        (7800.0, 17.1),
+        (8000.0, 19.2),
+        (8200.0, 21.4),
+        (8400.0, 24.1),
+        (8600.0, 26.0),
+        (8800.0, 28.9),
+        (9000.0, 32.8),
+    ];
+    for (index, (speed, expected)) in entries.into_iter().enumerate() {
+        // An entry belongs to the segments on both sides; below the first there is none.
+        for segment in [(index).max(1), index + 1] {
+            relative(&format!("f({speed})"), f(segment, speed), expected, 1e-13);
+        }
+        if let Some((next, above)) = entries.get(index + 1) {
+            let middle = f64::midpoint(speed, *next);
+            relative(&format!("f({middle})"), f(index + 1, middle), f64::midpoint(expected, *above), 1e-13);
+        }
+    }
+    assert_eq!(Stagnation::new(of_mars(), 1.0).boundaries(), entries.map(|(speed, _)| speed));
+    assert!(f(0, 5999.0).to_bits() == 0, "none below 6 km/s");
+    relative("above 9 km/s", f(17, 11_000.0), 32.8, 1e-13);
+    // The power of the radius and of the density.
+    let flux = |density: f64, radius: f64| tauber_sutton_mars(7, density, 7000.0, radius);
+    relative("the radius", flux(1e-3, 4.0) / flux(1e-3, 1.0), 4_f64.powf(0.526), 1e-13);
+    relative("the density", flux(4e-3, 1.0) / flux(1e-3, 1.0), 4_f64.powf(1.19), 1e-13);
+    // By hand: 2.35e4 · 10^-3.57 · 8.1 = 51.23 W/cm².
+    near("7 km/s", flux(1e-3, 1.0), 51.23 * CM2, 0.005 * CM2);
+}
+
+fn of_mars() -> Heating {
+    Heating { radiative: Radiative::TauberSuttonMars, ..Heating::default() }
+}
+
+/// Three powers of the speed, by their logarithms to the base of 10: 3.33e-30 is 10^-29.47756, 1.22e-12 10^-11.91364, 3.07e-44 10^-43.51286.
+#[test]
+fn craig_and_lyne_give_the_radiation_at_venus() {
+    for (segment, speed, [constant, exponent]) in [
+        (0, 4000.0_f64, [-29.477_556, 10.0]),
+        (0, 7999.0, [-29.477_556, 10.0]),
+        (1, 8001.0, [-11.913_640, 5.5]),
+        (1, 9999.0, [-11.913_640, 5.5]),
+        (2, 10_001.0, [-43.512_862, 13.4]),
+        (2, 11_600.0, [-43.512_862, 13.4]),
+    ] {
+        let expected = 10_f64.powf(constant + exponent * speed.log10() - 1.2 * 3.0);
+        // Six decimals of a logarithm.
+        relative(&format!("{speed} m/s"), craig_lyne(segment, 1e-3, speed, 1.0), expected, 2e-6);
+    }
+    let flux = |density: f64, radius: f64| craig_lyne(2, density, 11_000.0, radius);
+    relative("the radius", flux(1e-3, 4.0) / flux(1e-3, 1.0), 4_f64.powf(0.49), 1e-13);
+    relative("the density", flux(4e-3, 1.0) / flux(1e-3, 1.0), 4_f64.powf(1.2), 1e-13);
+    // The powers meet to their printed digits, three of a constant.
+    let of_venus = Heating { radiative: Radiative::CraigLyne, ..Heating::default() };
+    for (segment, speed) in [(0, 8000.0), (1, 10_000.0)] {
+        assert!(Stagnation::new(of_venus, 1.0).boundaries().contains(&speed));
+        relative("at a joint", craig_lyne(segment, 1e-3, speed, 1.0), craig_lyne(segment + 1, 1e-3, speed, 1.0), 3e-3);
+    }
+}
+
+/// Dual numbers carry the slopes along density and speed, in every segment.
+#[test]
+fn the_radiation_of_other_gases_has_its_derivatives() {
+    for (radiative, segments) in [
+        (Radiative::TauberSuttonMars, [(2, 6200.0), (7, 7100.0), (17, 9500.0)]),
+        (Radiative::CraigLyne, [(0, 7000.0), (1, 9000.0), (2, 11_000.0)]),
+    ] {
+        let nose = Stagnation::new(Heating { radiative, ..Heating::default() }, 0.7);
+        for (segment, speed) in segments {
+            let radiation = |density: Dual64, speed: Dual64| nose.heat_flux(segment, density, speed).radiative;
+            for (what, direction, scale) in [("density", [1.0, 0.0], 1e-3), ("speed", [0.0, 1.0], speed)] {
+                let at = |step: f64| {
+                    let [d, v] = direction.map(|of: f64| of * step);
+                    radiation(Dual64::from(1e-3 + d), Dual64::from(speed + v)).re
+                };
+                let dual = radiation(Dual64::new(1e-3, direction[0]), Dual64::new(speed, direction[1]));
+                let step = 1e-5 * scale;
+                let difference = (at(step) - at(-step)) / (2.0 * step);
+                // The square of the step, and roundings over it.
+                near(
+                    &format!("{radiative:?} by {what}"),
+                    dual.eps,
+                    difference,
+                    1e-7 * dual.re / scale + 1e-7 * dual.eps.abs(),
+                );
+            }
+            let rest = nose.heat_flux(0, Dual64::new(0.0, 1.0), Dual64::new(0.0, 0.0)).total();
+            assert!([rest.re, rest.eps].iter().all(|number| number.to_bits() == 0), "no number fails at rest");
+        }
+    }
+}
+
+/// A capsule that comes to Mars at 7.3 km/s has its peak within the range of the correlation, at 5.5 km/s below it.
+#[test]
+fn the_range_of_the_radiation_at_mars_is_told() {
+    let warned = |speed: f64| {
+        let mars = BODIES.iter().find(|body| body.name == "mars").unwrap();
+        let start = FlightPath {
+            radius: 3_396_190.0 + 110e3,
+            longitude: 0.0,
+            geocentric_latitude: 0.0,
+            speed,
+            flight_path_angle: -0.2,
+            heading: 0.0,
+        };
+        let case = Case {
+            planet: mars.planet(),
+            atmosphere: mars.atmosphere(),
+            vehicle: vehicle(600.0, 5.5, 0.0, 1.7),
+            initial_state: start.to_planet_fixed(),
+            ..lunar_return()
+        };
+        let flight = fly(&heated(case, Convective::SuttonGraves { constant: 1.898e-4 }, Radiative::TauberSuttonMars));
+        let said = flight.warnings().iter().any(|warning| {
+            matches!(
+                warning,
+                Warning::OutsideRange {
+                    correlation: "Relation of Tauber and Sutton for Mars",
+                    quantity: "speed relative to the air",
+                    ..
+                }
+            )
+        });
+        (said, peaks(&flight).radiative_heat_flux.value)
+    };
+    let (said, flux) = warned(7300.0);
+    assert!(!said && flux > 1e4, "{flux}");
+    let (said, _) = warned(6200.0);
+    assert!(said, "6.2 km/s");
+    // Where there is none, there is no peak of which to warn.
+    let (said, flux) = warned(5500.0);
+    assert!(!said && flux.to_bits() == 0, "{flux}");
 }

@@ -8,6 +8,7 @@ mod bodies;
 mod conversions;
 mod departures;
 mod dispersions;
+mod elsewhere;
 mod events;
 mod gas;
 mod gravity;

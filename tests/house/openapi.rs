@@ -614,6 +614,20 @@ async fn the_validation_is_valid() {
     is_valid(&schema("Validation"), &Service::new().get("/validation").await.json(), "the validation");
 }
 
+/// And it says all of them: a field that the schema does not know would be valid too.
+#[tokio::test]
+async fn the_planets_are_valid() {
+    let planets = Service::new().get("/planets").await.json();
+    is_valid(&schema("Planets"), &planets, "the planets");
+    let known = |name: &str| document()["components"]["schemas"][name]["properties"].clone();
+    for planet in planets["planets"].as_array().unwrap() {
+        for (value, of) in [(planet, "NamedPlanet"), (&planet["atmosphere"], "PlanetAtmosphere")] {
+            let names = value.as_object().into_iter().flatten().map(|(name, _)| name);
+            assert!(names.into_iter().all(|name| known(of).get(name).is_some()), "{of} lacks a field of {value}");
+        }
+    }
+}
+
 #[tokio::test]
 async fn problem_documents_are_valid() {
     let service = Service::new();

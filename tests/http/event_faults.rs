@@ -320,7 +320,7 @@ async fn all_faults_of_events_and_heating_come_in_one_answer() {
     let expected = [
         ("/vehicle/nose_radius", "must be greater than 0, got 0"),
         ("/heating/convective", "got \"fay_riddell\""),
-        ("/heating/radiative", "must be one of none, tauber_sutton, got null"),
+        ("/heating/radiative", "must be one of none, tauber_sutton, craig_lyne, got null"),
         ("/heating/emissivity", "must be greater than 0 and at most 1, got 2"),
         ("/heating/wall", "is not a field here; the fields are convective, radiative, emissivity"),
         ("/events/0/name", "must be a string, got a number"),

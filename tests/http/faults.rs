@@ -136,12 +136,14 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
             let phrase = match field.pointer.as_str() {
                 "/angle_unit" => "must be one of rad, deg, got ",
                 "/planet/model" => {
-                    "must be one of earth_wgs84, earth_jameson_listing, earth_jameson_text, custom, got "
+                    "must be one of earth_wgs84, earth_jameson_listing, earth_jameson_text, jupiter, mars, moon, neptune, saturn, titan, uranus, venus, custom, got "
                 }
                 "/solution" => "must be one of shallow_glide, loh, steep_glide, steep_ballistic, medium_glide, got ",
                 "/planet/shape" => "must be one of sphere, ellipsoid, got ",
                 "/planet/gravity/type" => "must be one of inverse_square, zonal, got ",
-                "/atmosphere/type" => "must be one of exponential, us76, layered_exponential, table, vacuum, got ",
+                "/atmosphere/type" => {
+                    "must be one of standard, exponential, us76, layered_exponential, table, vacuum, got "
+                }
                 "/atmosphere/preset" => "must be one of earth_seven_layer, got ",
                 "/wind/type" => "must be one of constant, table, got ",
                 "/vehicle/aerodynamics/type" | "/events/0/then/aerodynamics/type" => {
@@ -149,7 +151,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 }
                 "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
                 "/heating/convective/type" => "must be one of sutton_graves, got ",
-                "/heating/radiative" => "must be one of none, tauber_sutton, got ",
+                "/heating/radiative" => "must be one of none, tauber_sutton, craig_lyne, got ",
                 "/sensitivities/of/0/quantity" => "must be one of time, altitude, radius, longitude, ",
                 "/sensitivities/of/0/at" => "must be one of end, start, peak, lowest, got ",
                 "/sensitivities/of/0/at/side" => "must be one of before, after, got ",

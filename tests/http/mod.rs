@@ -30,6 +30,7 @@ mod nesc;
 mod numbers;
 mod output;
 mod page;
+mod planets;
 mod reference;
 mod sensitivities;
 mod sidereal_time;

@@ -23,6 +23,8 @@ use crate::wire::dispersions::{Covariance, Dispersion};
 use crate::wire::events::Event;
 use crate::wire::numbers::Varied;
 use crate::wire::outputs::{AvailableWhereMoved, OutputNumber};
+use crate::wire::planet::Planet;
+use crate::wire::reader::Fault;
 use crate::wire::scenario::{FlightRequest, RequestedOutput};
 use crate::wire::sensitivities::{Matrix, Method, RequestedSensitivities, Sensitivities, SensitivitiesAnswer};
 use crate::wire::track::Track;
@@ -44,7 +46,7 @@ pub struct Answer {
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
-    if let Some(fault) = Track::globe_fault(&request.request.planet, format) {
+    if let Some(fault) = globe_fault(&request.request.planet, format) {
         return Err(ApiError::Invalid(vec![fault]));
     }
     let start = Instant::now();
@@ -82,6 +84,15 @@ fn requested_output(format: Format) -> RequestedOutput {
         Format::Json | Format::Ndjson => RequestedOutput::Answer,
         Format::Csv => RequestedOutput::Rows,
         Format::Geojson | Format::Kml | Format::Czml => RequestedOutput::Map,
+    }
+}
+
+/// Why viewers of the format would place flights on the planet on another globe; none where they do not.
+fn globe_fault(planet: &Planet, format: Format) -> Option<Fault> {
+    match format {
+        Format::Kml => Track::kml_fault(planet),
+        Format::Czml => Track::czml_fault(planet),
+        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson => None,
     }
 }
 

@@ -75,8 +75,8 @@ pub struct Check {
 
 /// Group of cases. `thesis`: the seven cases of the thesis. `conversions`: the initial conditions that the thesis
 /// prints. `theories`: the closed-form theories of the thesis compared with flights. `check_cases`: NASA's check cases.
-/// `standard_air`: the U.S. Standard Atmosphere, 1976. `frames`: coordinates and orbital elements. `flights`: real
-/// entries.
+/// `standard_air`: the U.S. Standard Atmosphere, 1976. `frames`: coordinates and orbital elements. `bodies`: entries at
+/// other planets, compared with another program. `flights`: real entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
@@ -92,6 +92,8 @@ pub enum Group {
     StandardAir,
     /// Coordinates and orbital elements.
     Frames,
+    /// Entries at other planets, as another program flies them.
+    Bodies,
     /// Flights that were flown.
     Flights,
 }

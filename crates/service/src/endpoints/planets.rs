@@ -53,7 +53,7 @@ struct NamedPlanet {
     /// Standard atmosphere; absent if the planet has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
-    atmosphere: Option<StandardAtmosphere>,
+    atmosphere: Option<PlanetAtmosphere>,
     /// Remarks on the numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -80,8 +80,9 @@ struct SourcedWord {
     source: String,
 }
 
-/// Angle W of the prime meridian at J2000 (TDB), from the ascending node of the planet's equator on the equator of the ICRF. It grows with the
-/// rotation rate.
+/// Angle W of the prime meridian at J2000 (TDB), from the ascending node of the planet's equator on that of the ICRF.
+///
+/// It grows with the rotation rate.
 #[derive(Debug, Deserialize, Serialize, ToSchema)]
 struct PrimeMeridian {
     /// Angle at J2000, without the periodic terms.
@@ -109,9 +110,9 @@ struct ZonalHarmonics {
     source: String,
 }
 
-/// Standard atmosphere of a planet, by altitude. That of the Earth is `us76`, without lists.
+/// Standard atmosphere of a planet: a table, whose lists have one entry per altitude. That of the Earth is `us76`, without lists.
 #[derive(Debug, Deserialize, Serialize, ToSchema)]
-struct StandardAtmosphere {
+struct PlanetAtmosphere {
     /// Source of the atmosphere.
     source: String,
     /// How well the atmosphere is known: `high`, `medium` or `low`.
@@ -120,26 +121,30 @@ struct StandardAtmosphere {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
     licence: Option<String>,
-    /// Lists of the table, each with one entry per altitude.
-    #[serde(flatten)]
-    table: Option<AtmosphereTable>,
-}
-
-/// Lists of the table of an atmosphere.
-#[derive(Debug, Deserialize, Serialize, ToSchema)]
-struct AtmosphereTable {
     /// Altitudes, m.
-    altitude: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    altitude: Option<Vec<f64>>,
     /// Densities, kg/m³.
-    density: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    density: Option<Vec<f64>>,
     /// Temperatures, K.
-    temperature: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    temperature: Option<Vec<f64>>,
     /// Pressures, Pa.
-    pressure: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pressure: Option<Vec<f64>>,
     /// Molar masses, kg/mol.
-    molar_mass: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    molar_mass: Option<Vec<f64>>,
     /// Heat capacity ratios.
-    heat_capacity_ratio: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    heat_capacity_ratio: Option<Vec<f64>>,
 }
 
 /// List the planets that a case may name.
@@ -200,11 +205,16 @@ fn earth(model: PlanetModel, planet: &Planet, source: &str) -> NamedPlanet {
             value: "tauber_sutton".to_owned(),
             source: "M. E. Tauber and K. Sutton, Journal of Spacecraft and Rockets 28 (1991) 40-42".to_owned(),
         }),
-        atmosphere: Some(StandardAtmosphere {
+        atmosphere: Some(PlanetAtmosphere {
             source: "U.S. Standard Atmosphere, 1976 (us76)".to_owned(),
             confidence: "high".to_owned(),
             licence: None,
-            table: None,
+            altitude: None,
+            density: None,
+            temperature: None,
+            pressure: None,
+            molar_mass: None,
+            heat_capacity_ratio: None,
         }),
         notes: Some(
             "The rotation angle at an epoch is the Earth rotation angle of the IAU 2000 resolutions, with UTC for UT1."

@@ -45,6 +45,12 @@ pub const EARTH_ROTATION: &str = include_str!("../../../../tests/cases/frames/ea
 /// Flights that were flown.
 pub const FLIGHTS: &str = include_str!("../../../../tests/cases/flights/flights.json");
 
+/// Flights of another program at other planets.
+pub const AMAT: &str = include_str!("../../../../tests/cases/bodies/amat.json");
+
+/// Flights that were flown at other planets.
+pub const FLIGHTS_AT_PLANETS: &str = include_str!("../../../../tests/cases/flights/planets.json");
+
 /// A case of the thesis under one set of planet constants, with the solution of an independent program.
 #[derive(Clone, Debug)]
 pub struct ThesisCase {

@@ -1,4 +1,5 @@
-//! Entries that were flown, beside what was published of them: not all is known that they depend on, and nothing is tuned.
+//! Entries that were flown, beside what was published of them: not all is known that they depend on, and nothing is tuned. And entries at
+//! other planets as another program flies them.
 
 use serde_json::{Map, Value, json};
 
@@ -7,17 +8,35 @@ use super::{Check, Expected, Group, Origin, Program};
 use crate::error::ApiError;
 
 pub(super) fn checks(program: Program) -> Result<Vec<Check>, ApiError> {
-    let file = tree(cases::FLIGHTS);
+    let of_another_program = of_file(program, Group::Bodies, &tree(cases::AMAT))?;
+    let on_earth = of_file(program, Group::Flights, &tree(cases::FLIGHTS))?;
+    let elsewhere = of_file(program, Group::Flights, &tree(cases::FLIGHTS_AT_PLANETS))?;
+    Ok([of_another_program, on_earth, elsewhere].concat())
+}
+
+fn of_file(program: Program, group: Group, file: &Value) -> Result<Vec<Check>, ApiError> {
     let mut checks = Vec::new();
     for flight in elements(&file["flights"]) {
         let [case, source, note] = ["name", "source", "note"].map(|name| text(&flight[name]));
-        let origin = Origin { group: Group::Flights, case, source, note };
+        let origin = Origin { group, case, source, note };
+        let mut flown: Option<(&Value, Value)> = None;
         for published in elements(&flight["published"]) {
-            let answer = program.simulate(request(&file, flight, &published["when"]))?;
-            let uncertainty = published["uncertainty"].as_f64();
-            let expected = Expected { value: number(published, "/value"), allowed: uncertainty, rounding: 0.0 };
+            let when = &published["when"];
+            // What is published of the same flight is looked up in one answer.
+            let answer = match flown.take().filter(|(known, _)| *known == when) {
+                Some((_, answer)) => answer,
+                None => program.simulate(request(file, flight, when))?,
+            };
             let got = number(&answer, published["at"].as_str().unwrap_or_default());
-            checks.push(origin.beside(text(&published["quantity"]), &text(&published["unit"]), expected, got));
+            flown = Some((when, answer));
+            let [quantity, unit] = ["quantity", "unit"].map(|name| text(&published[name]));
+            let value = number(published, "/value");
+            checks.push(if let Some(allowed) = published["allowed"].as_f64() {
+                origin.check(quantity, &unit, Expected::within(value, allowed).rounding(0.1 * allowed), got)
+            } else {
+                let allowed = published["uncertainty"].as_f64();
+                origin.beside(quantity, &unit, Expected { value, allowed, rounding: 0.0 }, got)
+            });
         }
     }
     Ok(checks)

@@ -123,21 +123,24 @@ pub(super) fn heating(object: &mut Object, planet: Option<PlanetModel>) -> Optio
         .doc("Emissivity of the wall, greater than 0 and at most 1.")
         .default(CoreHeating::default().emissivity)
         .number(Bound::EMISSIVITY);
-    let (convective, radiative, planet) = (convective?, radiative?, planet?);
+    let planet = planet?;
     let mut of_air = Vec::new();
-    let mut faults = Vec::new();
-    let in_gas = convective_in(convective, planet).map_err(|detail| faults.push(("convective", detail)));
-    if let (ConvectiveFlux::Named(named), PlanetModel::Custom) = (convective, planet) {
+    if let (Some(ConvectiveFlux::Named(named)), PlanetModel::Custom) = (convective, planet) {
         of_air.push(CONVECTIVE.of(named));
     }
-    let shocked = radiative_in(radiative, planet).map_err(|detail| faults.push(("radiative", detail)));
-    if radiative != NamedRadiative::None && planet == PlanetModel::Custom {
-        of_air.push(RADIATIVE.of(radiative));
+    if let (Some(named), PlanetModel::Custom) = (radiative.filter(|named| *named != NamedRadiative::None), planet) {
+        of_air.push(RADIATIVE.of(named));
     }
-    for (field, detail) in faults {
-        object.fault_of(field, detail);
+    // Both are looked at before either ends the reading, so that all faults are told.
+    let convective = convective.map(|convective| convective_in(convective, planet));
+    let radiative = radiative.map(|radiative| radiative_in(radiative, planet));
+    if let Some(Err(detail)) = &convective {
+        object.fault_of("convective", detail.clone());
     }
-    let core = CoreHeating { convective: in_gas.ok()?, radiative: shocked.ok()?, emissivity: emissivity? };
+    if let Some(Err(detail)) = &radiative {
+        object.fault_of("radiative", detail.clone());
+    }
+    let core = CoreHeating { convective: convective?.ok()?, radiative: radiative?.ok()?, emissivity: emissivity? };
     Some(Heating { core, of_air })
 }
 

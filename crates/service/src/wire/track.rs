@@ -13,8 +13,6 @@ use reentry::trajectory::{EventPoint, FlightPoint, Trajectory};
 use serde::Serialize;
 use serde_json::json;
 
-use crate::format::Format;
-
 use super::columns::Columns;
 use super::epoch::{Epoch, Utc};
 use super::planet::{Planet, PlanetModel};
@@ -74,25 +72,27 @@ impl<'a> Track<'a> {
         Ok(Self { answer, epoch, vertices, points: marked(answer, flight, epoch) })
     }
 
-    /// Why viewers of a format would place flights on the planet on another globe; none where they do not.
+    /// Why viewers of KML would place flights on the planet on another globe; none where they do not.
     ///
     /// `GeoJSON` names the planet beside the track, and a custom planet has no globe of its own: its places are those of the Earth's.
-    pub fn globe_fault(planet: &Planet, format: Format) -> Option<Fault> {
+    pub fn kml_fault(planet: &Planet) -> Option<Fault> {
         let PlanetModel::Body(body) = planet.model else { return None };
-        let detail = match format {
-            Format::Kml if !kml::GLOBES.contains(&body.name) => {
-                format!(
-                    "must be the Earth, {} for KML, whose viewers have no globe of {}",
-                    kml::GLOBES.join(" or "),
-                    body.title
-                )
-            }
-            Format::Czml => {
-                format!("must be the Earth for CZML, whose viewers would place {} on its globe", body.title)
-            }
-            _ => return None,
-        };
-        Some(Fault::new("/planet/model", format!("{detail}; GeoJSON names the planet")))
+        let globes = kml::GLOBES.join(" or ");
+        let title = body.title;
+        let detail = format!(
+            "must be the Earth, {globes} for KML, whose viewers have no globe of {title}; GeoJSON names the planet"
+        );
+        (!kml::GLOBES.contains(&body.name)).then(|| Fault::new("/planet/model", detail))
+    }
+
+    /// Why viewers of CZML would place flights on the planet on another globe; none where they do not.
+    pub fn czml_fault(planet: &Planet) -> Option<Fault> {
+        let PlanetModel::Body(body) = planet.model else { return None };
+        let title = body.title;
+        let detail = format!(
+            "must be the Earth for CZML, whose viewers would place {title} on its globe; GeoJSON names the planet"
+        );
+        Some(Fault::new("/planet/model", detail))
     }
 
     /// The name of the flight.
