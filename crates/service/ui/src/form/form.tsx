@@ -6,11 +6,13 @@ import { address, type Case, type State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
 import { capital } from '../figures';
 import { chapterOf } from '../guide';
+import { bodyIn, isBody, modelOf } from '../planets';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
 import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
-import { exchanged, forget } from './held';
+import { exchanged, forget, settled } from './held';
 import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
+import { settle } from './planet';
 import type { Property } from './schema';
 import { rename, retype } from './state';
 
@@ -60,6 +62,7 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
             </a>
           ))}
         </p>
+        {(names.includes('planet') || names.includes('atmosphere')) && <Settled />}
         {names.map((name) => (
           <Item
             key={name}
@@ -71,6 +74,16 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
         ))}
       </div>
     </details>
+  );
+}
+
+/** What the choice of a planet changed beside itself, as long as the case has that planet. */
+function Settled() {
+  const now = settled.value;
+  return (
+    <output class="settled" aria-live="polite">
+      {now && now.model === modelOf(draft.value) ? now.changes.join(' ') : ''}
+    </output>
   );
 }
 
@@ -334,6 +347,7 @@ function Words({
         const next = event.currentTarget.value;
         // Another unit is another way to write the same case.
         if (path[0] === 'angle_unit') draft.value = inUnit(draft.peek(), next as AngleUnit);
+        else if (pointer(path) === '/planet/model') settle(next);
         else put(path, next);
       }}
     >
@@ -601,7 +615,7 @@ function Variant({ field, path, property }: VariantProps) {
     <div class="group">
       <Line label={path[0] === 'initial_state' ? 'Coordinates' : field.label} path={[...path, 'type']} property={property}>
         <select {...select([...path, 'type'])} value={type ?? ''} onChange={(event) => change(event.currentTarget.value)}>
-          {(field.none !== undefined || kind === undefined) && <option value="">{field.none ?? 'Choose …'}</option>}
+          {(field.none !== undefined || kind === undefined) && <option value="">{noneOf(field, path) ?? 'Choose …'}</option>}
           {Object.entries(field.kinds).map(([name, { label }]) => (
             <option key={name} value={name}>
               {label}
@@ -613,6 +627,12 @@ function Variant({ field, path, property }: VariantProps) {
       {kind && <Members key={type} fields={kind.fields} schema={kind.schema} path={path} />}
     </div>
   );
+}
+
+/** What it is called that there is no choice: for the atmosphere, which one is used then. */
+function noneOf(field: VariantProps['field'], path: Path): string | undefined {
+  const model = modelOf(draft.value);
+  return path[0] === 'atmosphere' && isBody(model) ? `Standard of ${bodyIn(model)} (default)` : field.none;
 }
 
 /** An angle, or a schedule of it. */
