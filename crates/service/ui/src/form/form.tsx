@@ -62,7 +62,7 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
             </a>
           ))}
         </p>
-        {(names.includes('planet') || names.includes('atmosphere')) && <Settled />}
+        {names.includes('atmosphere') && <p class="settled">{settlement()}</p>}
         {names.map((name) => (
           <Item
             key={name}
@@ -72,19 +72,20 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
             isBare={names.length === 1}
           />
         ))}
+        {names.includes('planet') && (
+          <output class="settled" aria-live="polite">
+            {settlement()}
+          </output>
+        )}
       </div>
     </details>
   );
 }
 
 /** What the choice of a planet changed beside itself, as long as the case has that planet. */
-function Settled() {
+function settlement(): string {
   const now = settled.value;
-  return (
-    <output class="settled" aria-live="polite">
-      {now && now.model === modelOf(draft.value) ? now.changes.join(' ') : ''}
-    </output>
-  );
+  return now && now.model === modelOf(draft.value) ? now.changes.join(' ') : '';
 }
 
 function isWithin(inner: string, outer: string): boolean {
@@ -267,7 +268,7 @@ function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
 function Control({ field, path, property, name }: ItemProps) {
   const value = get(draft.value, path);
   const input = { ...inputOf(path, field.kind === 'numbers', property), label: name };
-  const placeholder = property?.default === undefined ? undefined : String(property.default);
+  const placeholder = property?.default === undefined ? ownOf(path) : String(property.default);
   switch (field.kind) {
     case 'number':
       return (
@@ -311,6 +312,12 @@ function Control({ field, path, property, name }: ItemProps) {
     default:
       return null;
   }
+}
+
+/** What holds in place of a number without a default of its own: the coefficients of the planet, where they are known. */
+function ownOf(path: Path): string | undefined {
+  const model = modelOf(draft.value);
+  return /^\/planet\/gravity\/j\d$/.test(pointer(path)) && model !== 'custom' ? `that of ${bodyIn(model)}` : undefined;
 }
 
 /** The numbers of a list, or one that stands alone. */

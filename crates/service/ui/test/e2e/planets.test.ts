@@ -93,6 +93,7 @@ it('another planet takes its own air in place of that of the Earth, and says so'
   await said.first().waitFor();
   expect(await said.count()).toBe(2);
   expect(await air.inputValue()).toBe('standard');
+  expect(await page.locator('#field\\/planet\\/gravity\\/j2').getAttribute('placeholder')).toBe('that of Mars');
   await expect.poll(() => caseOf(opened)).toMatchObject({ planet: { model: 'mars' }, atmosphere: { type: 'standard' } });
   // What was the Earth's comes back by the undo, and the words go.
   await page.getByRole('button', { name: 'Undo' }).click();
