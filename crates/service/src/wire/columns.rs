@@ -163,9 +163,11 @@ pub static COLUMNS: [Column; 44] = [
          acceleration.",
         |point| point.loads.deceleration,
     ),
-    column("load_factor", "Load factor: resultant of lift, drag and thrust over mass and 9.80665 m/s².", |point| {
-        point.loads.load_factor
-    }),
+    column(
+        "load_factor",
+        "Load factor, in g of the Earth on every planet: resultant of lift, drag and thrust over mass and 9.80665 m/s².",
+        |point| point.loads.load_factor,
+    ),
     of(
         "azimuth",
         "Azimuth of the velocity relative to the rotating planet, from north (0) towards east (π/2), in [0, 2π).",

@@ -66,8 +66,10 @@ pub static QUANTITIES: Words<Quantity> = Words {
         word("dynamic_pressure", Quantity::DynamicPressure, "Dynamic pressure, Pa")
             .unit("Pa")
             .doc("Dynamic pressure ½ρV² with the air speed V, Pa."),
-        word("load_factor", Quantity::LoadFactor, "Load factor, g")
-            .doc("Load factor: resultant of lift, drag and thrust over mass and 9.80665 m/s²."),
+        word("load_factor", Quantity::LoadFactor, "Load factor, g").doc(
+            "Load factor, in g of the Earth on every planet: resultant of lift, drag and thrust over mass and \
+                 9.80665 m/s².",
+        ),
         word("flight_path_angle", Quantity::FlightPathAngle, "Flight-path angle")
             .unit(ANGLE)
             .doc("Angle of the velocity relative to the rotating planet above the plane normal to the radius."),

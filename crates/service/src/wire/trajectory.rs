@@ -55,7 +55,7 @@ pub struct Peak {
 pub struct Peaks {
     /// Deceleration -dV/dt of the speed relative to the rotating planet, m/s².
     pub deceleration: Peak,
-    /// Load factor: resultant of lift, drag and thrust over mass and 9.80665 m/s².
+    /// Load factor, in g of the Earth on every planet: resultant of lift, drag and thrust over mass and 9.80665 m/s².
     pub load_factor: Peak,
     /// Dynamic pressure, Pa.
     pub dynamic_pressure: Peak,

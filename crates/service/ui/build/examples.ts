@@ -10,6 +10,9 @@ const OWN: Record<string, string> = {
     'Fictitious capsule of Soyuz size: deorbit burn half a revolution before landing, separation, parachutes. The parachutes open instantly in this case, so their opening loads are higher than those of a real capsule.',
   sample_return:
     'Vehicle and entry state of Stardust (AIAA 2008-1198), with a constant drag coefficient and parachutes of similar size. The entry point is assumed: the capsule lands in Utah. Compare the peak load with the published 32.9 g.',
+  mars: 'Entry of the Mars Science Laboratory, 6 August 2012. Entry state: S. Dutta and R. D. Braun (2014). The bank angle is constant at 60°, as the flown one is not published in numbers; mass and coefficients are constant. The flight ends at 406 m/s, where the parachute opened after 254 s. The air is one Mars-GRAM column of another place and season. Altitudes are above the ellipsoid. Load factors are in g of the Earth.',
+  titan:
+    'Entry of Huygens, 14 January 2005. Interface at 1270 km at the given epoch (Kazeminejad et al., 2007); the drag coefficient, place and heading are assumed. The flight ends at 400 m/s, where the pilot parachute opened at 155 to 180 km, less than 3 minutes after the deceleration began. Load factors are in g of the Earth.',
 };
 /** The cases of the thesis, with their titles. */
 const THESIS: Record<string, string> = {
@@ -64,7 +67,8 @@ function read(path: string): any {
 function own(): Example[] {
   return Object.entries(OWN).map(([file, notes]) => {
     const request = read(`openapi/examples/${file}.json`);
-    return { group: 'Missions', title: request.name, case: request, notes };
+    const isEarth = (request.planet?.model ?? 'earth').startsWith('earth');
+    return { group: isEarth ? 'Missions' : 'Other planets', title: request.name, case: request, notes };
   });
 }
 

@@ -125,7 +125,7 @@ async function openFile(file: File): Promise<void> {
 const NEW: Case = {
   name: 'New case',
   angle_unit: 'deg',
-  atmosphere: { type: 'us76' },
+  atmosphere: { type: 'standard' },
   vehicle: { mass: 5500, reference_area: 12, aerodynamics: { type: 'constant', drag_coefficient: 1.3, lift_coefficient: 0.3 } },
   initial_state: {
     type: 'geodetic',

@@ -2,6 +2,7 @@ import type { Solution } from './api';
 import { difference, endsApart, type Figure, figuresOf, number } from './figures';
 import type { Run } from './flight';
 import { completed } from './fly';
+import { isSameGround, planetOf } from './planets';
 import { Scroll } from './scroll';
 import { angleUnit, current, pins, runs, solution, theory, theoryProblem } from './store';
 
@@ -92,7 +93,9 @@ function Differences() {
             <th scope="row">Distance between end points, km</th>
             <td>–</td>
             {others.map((run) => (
-              <td key={run.id}>{number(endsApart(first.flight, run.flight), 5)}</td>
+              <td key={run.id}>
+                {isSameGround(planetOf(first), planetOf(run)) ? number(endsApart(first.flight, run.flight), 5) : 'other planet'}
+              </td>
             ))}
           </tr>
         </tbody>

@@ -1,5 +1,6 @@
 import type { Answer, Schemas } from './api';
 import { endOf, type Flight, type Numbers } from './flight';
+import { bodyIn, isEarth, titleOfModel } from './planets';
 import { type AngleUnit, type Name, QUANTITIES, scaleOf, unitOf } from './quantities';
 
 /** A figure by which a flight is judged. */
@@ -33,7 +34,7 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
     return [
       {
         label: name === 'heat_load' ? title : `Peak ${title === 'Mach number' ? title : title.toLowerCase()}`,
-        unit,
+        unit: name === 'load_factor' ? unitOfLoad(answer.models.planet) : unit,
         value: peak.value * scale,
         ...(name === 'heat_load' ? {} : { note: whereOf(peak) }),
         ...(name === 'load_factor' ? partsOf(answer) : {}),
@@ -62,6 +63,11 @@ export function figuresOf(flight: Flight, angleUnit: AngleUnit): Figure[] {
       ? { label: 'Ground range', unit: 'km', value: (final.ground_range ?? Number.NaN) / 1e3 }
       : { label: 'Downrange', unit: 'km', value: final.downrange / 1e3 },
   ];
+}
+
+/** The unit of load factors, which is the g of the Earth on every planet. */
+export function unitOfLoad(planet: string): string {
+  return isEarth(planet) ? 'g' : 'g of the Earth';
 }
 
 /** A peak below this share of the greatest is not worth a word. */
@@ -99,13 +105,13 @@ function instantOf({ final_state: { utc } }: Answer): string | null {
   return utc ? `${utc.slice(0, 19).replace('T', ' ')} UTC` : null;
 }
 
-const PLANETS: Record<Schemas['PlanetModel'], string> = {
+const EARTHS: Record<string, string> = {
   earth_wgs84: 'WGS 84',
   earth_jameson_listing: 'thesis listing',
   earth_jameson_text: 'thesis text',
-  custom: 'Custom',
 };
 const ATMOSPHERES: Record<Schemas['Atmosphere']['type'], string> = {
+  standard: 'standard atmosphere',
   exponential: 'exponential atmosphere',
   us76: 'U.S. Standard Atmosphere 1976',
   layered_exponential: 'layered exponential atmosphere',
@@ -119,14 +125,16 @@ const GRAVITIES: Record<Schemas['Gravity']['type'], string> = {
 
 /** A text with the names of planets in words. */
 export function withPlanetsInWords(text: string): string {
-  return text.replaceAll(/earth_\w+/g, (name) => PLANETS[name as Schemas['PlanetModel']] ?? name);
+  return text.replaceAll(/earth_\w+/g, (name) => EARTHS[name] ?? name);
 }
 
 /** The models of a flight: planet, atmosphere, gravity. */
 export function modelsInWords({ planet, shape, atmosphere, gravity }: Answer['models']): string {
   const air = ATMOSPHERES[atmosphere as keyof typeof ATMOSPHERES] ?? atmosphere;
-  const ground = planet.startsWith('earth_jameson') ? `Earth ${shape} (${PLANETS[planet]})` : `${PLANETS[planet]} ${shape}`;
-  return `${ground}, ${air}, ${GRAVITIES[gravity as keyof typeof GRAVITIES] ?? gravity}`;
+  const name = EARTHS[planet] ?? titleOfModel(planet);
+  const ground = planet.startsWith('earth_jameson') ? `Earth ${shape} (${name})` : `${name} ${shape}`;
+  const of = atmosphere === 'standard' ? ` of ${bodyIn(planet)}` : '';
+  return `${ground}, ${air}${of}, ${GRAVITIES[gravity as keyof typeof GRAVITIES] ?? gravity}`;
 }
 
 /** A number to so many digits, without zeros at its end. */

@@ -3,6 +3,7 @@ import { type Case, download, ProblemError } from './api';
 import { set, tidied } from './case';
 import { copied } from './clipboard';
 import { toFragment } from './link';
+import { bodyIn, hasGlobe, modelOf } from './planets';
 import { asCurl, asJson, asPython, fileName } from './snippets';
 import { draft } from './store';
 
@@ -35,6 +36,8 @@ export function Take() {
       );
     }
   };
+  const model = modelOf(draft.value);
+  const without = FORMATS.filter((format) => !hasGlobe(format, model));
   return (
     <section class="take" aria-label="Export">
       <div class="buttons">
@@ -55,8 +58,8 @@ export function Take() {
       <div class="buttons">
         <span class="quiet">Download</span>
         {FORMATS.map((format) => (
-          <button key={format} type="button" onClick={() => void save(format)}>
-            {format === 'geojson' ? 'GeoJSON' : format.toUpperCase()}
+          <button key={format} type="button" disabled={!hasGlobe(format, model)} onClick={() => void save(format)}>
+            {nameOf(format)}
           </button>
         ))}
         <button
@@ -72,12 +75,17 @@ export function Take() {
           Print
         </button>
       </div>
+      {without.length > 0 && (
+        <p class="quiet">{`${without.map(nameOf).join(' and ')}: viewers have no globe of ${bodyIn(model)}. GeoJSON names the planet.`}</p>
+      )}
       <output class="quiet" aria-live="polite">
         {said.value}
       </output>
     </section>
   );
 }
+
+const nameOf = (format: (typeof FORMATS)[number]) => (format === 'geojson' ? 'GeoJSON' : format.toUpperCase());
 
 /** The case for a format: a table and a map have no place for what is said about a flight, and a map chooses its own columns. */
 function bodyFor(format: (typeof FORMATS)[number]): Case {

@@ -6,11 +6,13 @@ import { address, type Case, type State } from '../api';
 import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
 import { capital } from '../figures';
 import { chapterOf } from '../guide';
+import { bodyIn, isBody, modelOf } from '../planets';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
 import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
-import { exchanged, forget } from './held';
+import { exchanged, forget, settled } from './held';
 import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
+import { settle } from './planet';
 import type { Property } from './schema';
 import { rename, retype } from './state';
 
@@ -60,6 +62,7 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
             </a>
           ))}
         </p>
+        {names.includes('atmosphere') && <p class="settled">{settlement()}</p>}
         {names.map((name) => (
           <Item
             key={name}
@@ -69,9 +72,20 @@ function Fold({ title, names, isOpen }: { title: string; names: (keyof Case)[]; 
             isBare={names.length === 1}
           />
         ))}
+        {names.includes('planet') && (
+          <output class="settled" aria-live="polite">
+            {settlement()}
+          </output>
+        )}
       </div>
     </details>
   );
+}
+
+/** What the choice of a planet changed beside itself, as long as the case has that planet. */
+function settlement(): string {
+  const now = settled.value;
+  return now && now.model === modelOf(draft.value) ? now.changes.join(' ') : '';
 }
 
 function isWithin(inner: string, outer: string): boolean {
@@ -254,7 +268,7 @@ function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
 function Control({ field, path, property, name }: ItemProps) {
   const value = get(draft.value, path);
   const input = { ...inputOf(path, field.kind === 'numbers', property), label: name };
-  const placeholder = property?.default === undefined ? undefined : String(property.default);
+  const placeholder = property?.default === undefined ? ownOf(path) : String(property.default);
   switch (field.kind) {
     case 'number':
       return (
@@ -300,6 +314,12 @@ function Control({ field, path, property, name }: ItemProps) {
   }
 }
 
+/** What holds in place of a number without a default of its own: the coefficients of the planet, where they are known. */
+function ownOf(path: Path): string | undefined {
+  const model = modelOf(draft.value);
+  return /^\/planet\/gravity\/j\d$/.test(pointer(path)) && model !== 'custom' ? `that of ${bodyIn(model)}` : undefined;
+}
+
 /** The numbers of a list, or one that stands alone. */
 function listed(value: unknown): unknown[] {
   return Array.isArray(value) ? value : value === undefined ? [] : [value];
@@ -334,6 +354,7 @@ function Words({
         const next = event.currentTarget.value;
         // Another unit is another way to write the same case.
         if (path[0] === 'angle_unit') draft.value = inUnit(draft.peek(), next as AngleUnit);
+        else if (pointer(path) === '/planet/model') settle(next);
         else put(path, next);
       }}
     >
@@ -601,7 +622,7 @@ function Variant({ field, path, property }: VariantProps) {
     <div class="group">
       <Line label={path[0] === 'initial_state' ? 'Coordinates' : field.label} path={[...path, 'type']} property={property}>
         <select {...select([...path, 'type'])} value={type ?? ''} onChange={(event) => change(event.currentTarget.value)}>
-          {(field.none !== undefined || kind === undefined) && <option value="">{field.none ?? 'Choose …'}</option>}
+          {(field.none !== undefined || kind === undefined) && <option value="">{noneOf(field, path) ?? 'Choose …'}</option>}
           {Object.entries(field.kinds).map(([name, { label }]) => (
             <option key={name} value={name}>
               {label}
@@ -613,6 +634,12 @@ function Variant({ field, path, property }: VariantProps) {
       {kind && <Members key={type} fields={kind.fields} schema={kind.schema} path={path} />}
     </div>
   );
+}
+
+/** What it is called that there is no choice: for the atmosphere, which one is used then. */
+function noneOf(field: VariantProps['field'], path: Path): string | undefined {
+  const model = modelOf(draft.value);
+  return path[0] === 'atmosphere' && isBody(model) ? `Standard of ${bodyIn(model)} (default)` : field.none;
 }
 
 /** An angle, or a schedule of it. */

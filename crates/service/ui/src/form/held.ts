@@ -1,3 +1,4 @@
+import { signal } from '@preact/signals';
 import { get, type Path, pointer } from '../case';
 import { draft } from '../store';
 
@@ -10,7 +11,11 @@ export function exchanged(path: Path, from: string, to: string, start: unknown, 
   return held.get(`${pointer(path)} ${to}`) ?? start;
 }
 
+/** What another planet changed beside itself, and for which planet that holds. */
+export const settled = signal<{ model: string; changes: string[] } | null>(null);
+
 /** Nothing of one case comes back in another, nor of one element of a list in the next. */
 export function forget(): void {
   held.clear();
+  settled.value = null;
 }

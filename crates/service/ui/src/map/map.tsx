@@ -5,6 +5,7 @@ import { copied } from '../clipboard';
 import { onTheme } from '../colours';
 import { kilometres, number } from '../figures';
 import { at, type Run } from '../flight';
+import { bodyIn, isEarth, isSameGround, planetOf } from '../planets';
 import { current, cursor, draft, runs } from '../store';
 import { extent, middleOf, placeAt, ramp, written } from './geography';
 import { drawScene, isPlaced, type Scene } from './view';
@@ -12,10 +13,12 @@ import './map.css';
 
 const scene = computed<Scene>(() => {
   const instant = Date.parse(draft.value.epoch ?? '');
-  return { runs: runs.value, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
+  const planet = current.value ? planetOf(current.value) : '';
+  const here = runs.value.filter((run) => isSameGround(planetOf(run), planet));
+  return { runs: here, planet, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
 });
 
-/** The ground track, on a world map and on a globe. */
+/** The ground track, on a map of the planet and on a globe. */
 export default function Maps() {
   const isClose = useSignal(false);
   const run = current.value;
@@ -23,7 +26,7 @@ export default function Maps() {
   return (
     <section class="panel" aria-label="Ground track">
       <div class="panel-head">
-        <h2>Ground track</h2>
+        <h2>{`Ground track on ${bodyIn(planetOf(run))}`}</h2>
         <button
           type="button"
           aria-pressed={isClose.value}
@@ -39,9 +42,20 @@ export default function Maps() {
         <World isClose={isClose.value} />
         <Globe />
       </div>
+      <Ground planet={planetOf(run)} />
       <Places run={run} />
     </section>
   );
+}
+
+/** What is not on the map: the surface of another planet, and flights elsewhere. */
+function Ground({ planet }: { planet: string }) {
+  const elsewhere = runs.value.filter((run) => !isSameGround(planetOf(run), planet)).length;
+  const lines = [
+    isEarth(planet) ? '' : `There is no picture of ${bodyIn(planet)}: meridians and parallels only. Longitudes are positive to the east.`,
+    elsewhere === 0 ? '' : `${elsewhere === 1 ? 'A pinned flight is' : `${elsewhere} pinned flights are`} on another planet and not shown.`,
+  ].filter(Boolean);
+  return lines.length === 0 ? null : <p class="quiet">{lines.join(' ')}</p>;
 }
 
 /** A canvas that is drawn anew where the scene, the theme or its size changes, at most once a frame. */
@@ -124,7 +138,9 @@ function World({ isClose }: { isClose: boolean }) {
       ref={canvas}
       class="world"
       role="img"
-      aria-label={run ? `World map with the track ${summaryOf(run)}` : 'World map'}
+      aria-label={
+        run ? `${isEarth(planetOf(run)) ? 'World map' : `Map of ${bodyIn(planetOf(run))}`} with the track ${summaryOf(run)}` : 'World map'
+      }
       onPointerMove={(event) => look(projection.current, event)}
     />
   );
@@ -189,7 +205,11 @@ function Globe() {
         ref={canvas}
         role="img"
         tabIndex={0}
-        aria-label={run ? `Globe with the track ${summaryOf(run)}; arrow keys rotate it` : 'Globe'}
+        aria-label={
+          run
+            ? `Globe${isEarth(planetOf(run)) ? '' : ` of ${bodyIn(planetOf(run))}`} with the track ${summaryOf(run)}; arrow keys rotate it`
+            : 'Globe'
+        }
         onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
         onPointerMove={(event) => {
           if (event.buttons === 0) return;

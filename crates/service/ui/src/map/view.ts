@@ -1,18 +1,23 @@
 import { type GeoProjection, geoCircle, geoDistance, geoPath } from 'd3-geo';
 import { colour } from '../colours';
+import { capital } from '../figures';
 import type { Run } from '../flight';
+import { bodyIn, isEarth } from '../planets';
 import { belowSun, graticule, LAND, placeAt, ramp, stretches } from './geography';
 
 /** What a map shows. */
 export interface Scene {
+  /** The flights on the planet, the current one first. */
   runs: Run[];
+  /** The model of the planet. */
+  planet: string;
   /** The instant that is looked at, s. */
   time: number | null;
   /** When the flight begins, where the case says it. */
   epoch: Date | null;
 }
 
-/** Draws a scene by a projection: the Earth, the night, the tracks, the marks. */
+/** Draws a scene by a projection: the Earth and the night, or the meridians and parallels of another planet; the tracks, the marks. */
 export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjection, scene: Scene, step: number): void {
   const path = geoPath(projection, ctx);
   const fill = (shape: Parameters<typeof path>[0], style: string) => {
@@ -30,10 +35,12 @@ export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjecti
   };
   ctx.lineJoin = 'round';
   ctx.lineCap = 'round';
-  fill({ type: 'Sphere' }, colour('sea'));
-  fill(LAND, colour('land'));
-  stroke(graticule(step), colour('line'), 0.6);
-  drawNight(fill, scene);
+  // Of other planets neither a coast is known, nor where the sun is.
+  const onEarth = isEarth(scene.planet);
+  fill({ type: 'Sphere' }, colour(onEarth ? 'sea' : 'raised'));
+  if (onEarth) fill(LAND, colour('land'));
+  stroke(graticule(step), colour(onEarth ? 'line' : 'line-strong'), onEarth ? 0.6 : 0.4);
+  if (onEarth) drawNight(fill, scene);
   stroke({ type: 'Sphere' }, colour('line-strong'), 1);
   for (const run of [...scene.runs].reverse()) {
     const track = stretches(run.flight);
@@ -45,6 +52,16 @@ export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjecti
     for (const { places, level } of track) stroke({ type: 'LineString', coordinates: places }, ramp(level), 3);
   }
   drawMarks(ctx, projection, scene);
+  if (!onEarth) drawName(ctx, bodyIn(scene.planet));
+}
+
+/** The planet's name, in the corner. */
+function drawName(ctx: CanvasRenderingContext2D, name: string): void {
+  ctx.font = '600 13px system-ui, sans-serif';
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'alphabetic';
+  ctx.fillStyle = colour('muted');
+  ctx.fillText(capital(name), 8, ctx.canvas.clientHeight - 8);
 }
 
 /** The half of the Earth on which the sun does not shine. */

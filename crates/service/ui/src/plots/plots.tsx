@@ -1,6 +1,7 @@
 import { useSignal } from '@preact/signals';
-import { columnOf, number, reading } from '../figures';
+import { columnOf, number, reading, unitOfLoad } from '../figures';
 import type { Flight } from '../flight';
+import { planetOf } from '../planets';
 import { type Name, QUANTITIES, unitOf } from '../quantities';
 import { Scroll } from '../scroll';
 import { added, angleUnit, current, cursor, runs } from '../store';
@@ -97,11 +98,10 @@ interface CardProps {
 }
 
 function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
-  const unit = angleUnit.value;
   return (
     <div class={isLarge ? 'plot-card large' : 'plot-card'}>
       <div class="plot-head">
-        <h3>{isLarge ? `${titleOf(axes.y, unit)}, against speed` : titleOf(axes.y, unit)}</h3>
+        <h3>{isLarge ? `${titleHere(axes.y)}, against speed` : titleHere(axes.y)}</h3>
         <Readings axes={axes} />
         {onRemove && (
           <button type="button" class="small" onClick={onRemove} aria-label={`Remove plot: ${QUANTITIES[axes.y].label}`}>
@@ -110,9 +110,15 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
         )}
       </div>
       <Plot axes={axes} height={isLarge ? 300 : 210} unzoom={unzoom} />
-      <p class="quiet plot-axis">{titleOf(axes.x, unit)}</p>
+      <p class="quiet plot-axis">{titleHere(axes.x)}</p>
     </div>
   );
+}
+
+/** The label of a quantity with its unit, on the planet of the current flight. */
+function titleHere(name: Name): string {
+  const planet = current.value ? planetOf(current.value) : '';
+  return name === 'load_factor' && planet ? `${QUANTITIES[name].label}, ${unitOfLoad(planet)}` : titleOf(name, angleUnit.value);
 }
 
 /** The plotted quantity of every flight at the instant that is looked at. */
@@ -204,7 +210,7 @@ function Rows({ flight, names, label }: { flight: Flight; names: Name[]; label: 
           <tr>
             {names.map((name) => (
               <th scope="col" key={name}>
-                {titleOf(name, unit)}
+                {titleHere(name)}
               </th>
             ))}
           </tr>

@@ -60,6 +60,13 @@ it('every example downloads in every format', async () => {
     await choose.selectOption({ label: title });
     for (const format of ['CSV', 'JSON', 'GeoJSON', 'KML', 'CZML']) {
       const button = page.getByRole('button', { name: format, exact: true }).last();
+      if (await button.isDisabled()) {
+        // Only what the service refuses is not offered.
+        const tree = await fromFragment(new URL(page.url()).hash);
+        const refusal = await ask(service.address, `simulate?format=${format.toLowerCase()}`, tree);
+        expect(refusal.errors?.[0]?.pointer).toBe('/planet/model');
+        continue;
+      }
       const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
       expect(download.suggestedFilename()).toMatch(new RegExp(`\\.${format}$`, 'i'));
       expect(await download.failure()).toBeNull();

@@ -20,7 +20,7 @@ const peak = (value: number) => ({ value, time: 50, altitude: 40_000 });
 const ANSWER = {
   angle_unit: 'rad',
   version: '0',
-  models: {},
+  models: { planet: 'earth_wgs84' },
   termination: 'surface_impact',
   initial_state: {
     time: 0,
@@ -161,6 +161,8 @@ it('models are told in words', () => {
   expect(modelsInWords(models as Answer['models'])).toBe('WGS 84 ellipsoid, U.S. Standard Atmosphere 1976, zonal gravity');
   const thesis = { ...models, planet: 'earth_jameson_listing', shape: 'sphere', atmosphere: 'exponential', gravity: 'inverse_square' };
   expect(modelsInWords(thesis as Answer['models'])).toBe('Earth sphere (thesis listing), exponential atmosphere, inverse-square gravity');
+  const titan = { ...models, planet: 'titan', atmosphere: 'standard' };
+  expect(modelsInWords(titan as Answer['models'])).toBe('Titan ellipsoid, standard atmosphere of Titan, zonal gravity');
   expect(withPlanetsInWords('place of impact, earth_jameson_text')).toBe('place of impact, thesis text');
 });
 
