@@ -37,7 +37,7 @@ fn winter() -> Nrlmsise00 {
 
 /// Density, temperature, pressure and speed of sound.
 fn air<S: Scalar>(model: &Nrlmsise00, time: S, position: &Vector3<S>) -> [S; 4] {
-    let sample = model.sample(&EARTH, time, position);
+    let sample = model.sample(EARTH.semi_axes(), time, position);
     [sample.density, sample.temperature.unwrap(), sample.pressure.unwrap(), sample.speed_of_sound.unwrap()]
 }
 
@@ -72,7 +72,7 @@ fn the_place_in_closed_form_is_the_exact_one() {
             for longitude in [-179.9, 0.0, 77.0] {
                 let place = position(altitude, latitude, longitude);
                 let (exact_latitude, exact_altitude) = latitude_and_altitude(&place, &EARTH);
-                let [found_latitude, found_altitude] = geodetic(&place, &EARTH);
+                let [found_latitude, found_altitude] = geodetic(&place, EARTH.semi_axes());
                 near("latitude", found_latitude, exact_latitude, 1e-9);
                 near("altitude", found_altitude, exact_altitude, 1e-6);
             }

@@ -79,8 +79,7 @@ async fn conditions_and_coefficients_by_mach_number_need_a_temperature() {
                     ("/stop", json!({"when": [speed, mach]})),
                 ],
             );
-            let phrase =
-                "requires a Mach number: the atmosphere must be us76, or a table with temperature or speed_of_sound";
+            let phrase = "requires a Mach number: the atmosphere must be standard, us76 or nrlmsise00, or a table with temperature or speed_of_sound";
             let pointers = ["/events/0/when/quantity", "/events/1/then/aerodynamics/type", "/stop/when/1/quantity"];
             steady.refused_at("/simulate", &request, &pointers.map(|pointer| (pointer, phrase))).await;
             good_answer(&steady.service, "/simulate", &with(&request, "/atmosphere", json!({"type": "us76"}))).await;

@@ -48,6 +48,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::BooleanOrObject => "must be true, false or an object with outputs and numbers",
                 Kind::False => "must be false",
                 Kind::Object => "must be an object",
+                Kind::TextOrObject => "must be a string or an object",
                 Kind::Vector | Kind::Numbers => "must be an array of numbers",
                 Kind::Matrix => "must be an array of arrays of numbers",
                 Kind::Names => "must be an array of names",
@@ -142,7 +143,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/planet/shape" => "must be one of sphere, ellipsoid, got ",
                 "/planet/gravity/type" => "must be one of inverse_square, zonal, got ",
                 "/atmosphere/type" => {
-                    "must be one of standard, exponential, us76, layered_exponential, table, vacuum, got "
+                    "must be one of standard, exponential, us76, nrlmsise00, layered_exponential, table, vacuum, got "
                 }
                 "/atmosphere/preset" => "must be one of earth_seven_layer, got ",
                 "/wind/type" => "must be one of constant, table, got ",

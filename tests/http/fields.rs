@@ -39,6 +39,8 @@ pub(crate) enum Kind {
     Command(Range),
     /// An object with a thrust, or `"off"`.
     Thrust,
+    /// Text, or an object.
+    TextOrObject,
     /// One of some names, or an object.
     NameOrObject,
     /// A number, or one for each entry of a table.
@@ -91,7 +93,8 @@ pub(crate) enum Limit {
 
 use Kind::{
     Angle, Boolean, BooleanOrObject, Command, False, Instant, Matrix, Name, NameOrObject, Names, Number,
-    NumberOrNumbers, Numbers, Object, Objects, SiderealTime, Text, TextOrTexts, Texts, Thrust, Vector, Whole,
+    NumberOrNumbers, Numbers, Object, Objects, SiderealTime, Text, TextOrObject, TextOrTexts, Texts, Thrust, Vector,
+    Whole,
 };
 use Limit::{Closed, Open, Unlimited};
 use Need::{Alternative, Optional, Required};
@@ -323,7 +326,7 @@ const AT_EVENT: [Row; 2] =
     [("/sensitivities/of/0/at/event", Alternative, Text), ("/sensitivities/of/0/at/side", Optional, Name)];
 
 const OF_SITE: [Row; 3] = [
-    ("/sensitivities/of/0/site", Alternative, Object),
+    ("/sensitivities/of/0/site", Alternative, TextOrObject),
     ("/sensitivities/of/0/site/longitude", Required, Angle(TURN)),
     ("/sensitivities/of/0/site/geodetic_latitude", Required, Angle(QUARTER)),
 ];

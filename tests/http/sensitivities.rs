@@ -203,7 +203,7 @@ async fn what_cannot_be_varied_or_given_is_refused() {
         ("/sensitivities/of/0/at/event", "must be the name of an event of the case, got \"nothing\""),
         (
             "/sensitivities/of/1/quantity",
-            "pressure requires an atmosphere with a pressure: us76, or a table with \
+            "pressure requires an atmosphere with a pressure: standard, us76 or nrlmsise00, or a table with \
                                           pressure",
         ),
         ("/sensitivities/to/0", "must point to a number of the case, or to a list of numbers, got nothing"),

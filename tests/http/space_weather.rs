@@ -1,8 +1,8 @@
 //! Files of space-weather indices, and cases that take numbers or those of a file.
 
 use reentry::atmosphere::nrlmsise00::{Ap, SpaceWeather};
-use reentry_service::space_weather::Records;
 use reentry_service::wire::epoch::{Epoch, day_of};
+use reentry_service::wire::space_weather::Records;
 use serde_json::json;
 
 use super::refusal::Steady;

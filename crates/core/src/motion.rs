@@ -418,7 +418,7 @@ impl<P: Scalar> Forces<P> {
     ) -> Option<(S, S)> {
         match &self.models.atmosphere {
             Atmosphere::Nrlmsise00(model) if !THESIS => {
-                let air = model.sample(&self.models.planet.shape, time, &position());
+                let air = model.sample(self.models.planet.shape.semi_axes(), time, &position());
                 Some((air.density, air.speed_of_sound.unwrap_or_else(S::one)))
             }
             _ => None,

@@ -172,7 +172,9 @@ pub enum Fault {
         stop: f64,
     },
     /// Something needs a Mach number under an atmosphere that has none.
-    #[error("requires a Mach number: the atmosphere must be us76, or a table with temperature or speed_of_sound")]
+    #[error(
+        "requires a Mach number: the atmosphere must be standard, us76 or nrlmsise00, or a table with temperature or speed_of_sound"
+    )]
     NoTemperature {
         /// What needs it: its place in the [`Case`].
         field: Cow<'static, str>,

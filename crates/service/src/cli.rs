@@ -24,8 +24,8 @@ use crate::config::Config;
 use crate::endpoints::planets::Planets;
 use crate::format::Format;
 use crate::router::document;
-use crate::space_weather::{self, Records};
 use crate::wire::shown::printable;
+use crate::wire::space_weather::{self, Records};
 
 /// Simulates atmospheric entry: trajectories, landing points, loads and heating.
 #[derive(Debug, Parser)]

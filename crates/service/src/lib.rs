@@ -23,7 +23,6 @@ pub mod rate;
 pub mod reply;
 pub mod router;
 pub mod serve;
-pub mod space_weather;
 pub mod state;
 pub mod telemetry;
 pub mod validation;

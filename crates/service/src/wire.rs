@@ -10,6 +10,7 @@ pub mod reader;
 pub mod schema;
 pub mod shown;
 pub mod sites;
+pub mod space_weather;
 
 pub mod atmosphere;
 pub mod control;

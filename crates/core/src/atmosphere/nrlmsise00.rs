@@ -14,7 +14,6 @@ use nrlmsise00::{Input, MagneticActivity, Model, Output};
 
 use super::AtmosphereSample;
 use super::table::MOLAR_GAS_CONSTANT;
-use crate::planet::Shape;
 use crate::scalar::{LookUp, Plain, Scalar, length};
 
 /// Where the model begins, m: below, its polynomials grow without bound.
@@ -86,10 +85,11 @@ impl Nrlmsise00 {
         Self { model: Model::new(), day_of_year: i32::from(day_of_year), second, space_weather }
     }
 
-    /// The air at a time, s, and a planet-fixed position, m, above a surface.
-    pub fn sample<S: Scalar>(&self, shape: &Shape, time: S, position: &Vector3<S>) -> AtmosphereSample<S> {
+    /// The air at a time, s, and a planet-fixed position, m, above the ellipsoid with these semi-axes in the equatorial plane and along the pole,
+    /// m.
+    pub fn sample<S: Scalar>(&self, semi_axes: (f64, f64), time: S, position: &Vector3<S>) -> AtmosphereSample<S> {
         let at = [time, position.x, position.y, position.z];
-        let [density, temperature, pressure, sound] = S::look_up(at, &Above { model: self, shape: *shape });
+        let [density, temperature, pressure, sound] = S::look_up(at, &Above { model: self, semi_axes });
         AtmosphereSample {
             density,
             temperature: Some(temperature),
@@ -100,8 +100,8 @@ impl Nrlmsise00 {
 
     /// The air at t = 0 at an altitude, m, above latitude 0 and longitude 0: for those who know no place.
     pub(super) fn above_origin<S: Scalar>(&self, altitude: S) -> AtmosphereSample<S> {
-        let shape = Shape::Sphere { radius: 6_378_137.0 };
-        self.sample(&shape, S::zero(), &Vector3::new(altitude + 6_378_137.0, S::zero(), S::zero()))
+        let radius = 6_378_137.0;
+        self.sample((radius, radius), S::zero(), &Vector3::new(altitude + radius, S::zero(), S::zero()))
     }
 
     /// Density, temperature, pressure and speed of sound at a time, s, and a geodetic place, m and rad.
@@ -168,15 +168,15 @@ impl Nrlmsise00 {
     }
 }
 
-/// The air above a surface, by time and position.
+/// The air above an ellipsoid, by time and position.
 struct Above<'a> {
     model: &'a Nrlmsise00,
-    shape: Shape,
+    semi_axes: (f64, f64),
 }
 
 impl LookUp<4, 4> for Above<'_> {
     fn at<S: Plain>(&self, [time, x, y, z]: [S; 4]) -> [S; 4] {
-        let [latitude, altitude] = geodetic(&Vector3::new(x, y, z), &self.shape);
+        let [latitude, altitude] = geodetic(&Vector3::new(x, y, z), self.semi_axes);
         // On the axis every longitude is as good, and none has a slope.
         let on_axis = (x * x + y * y).less_than(1e-6);
         let longitude = Scalar::atan2(S::select(on_axis, S::zero(), y), S::select(on_axis, S::one(), x));
@@ -184,12 +184,11 @@ impl LookUp<4, 4> for Above<'_> {
     }
 }
 
-/// Geodetic latitude, rad, and altitude, m, in closed form: off by less than 1e-9 rad and 1e-6 m within 1000 km of the Earth's surface.
+/// Geodetic latitude, rad, and altitude, m, above the ellipsoid with these semi-axes in the equatorial plane and along the pole, m, in closed form: off by less than 1e-9 rad and 1e-6 m within 1000 km of the Earth's surface.
 ///
 /// # Reference
 /// B. R. Bowring, The accuracy of geodetic latitude and height equations, Survey Review 28 (1985) 202-206.
-pub fn geodetic<S: Scalar>(position: &Vector3<S>, shape: &Shape) -> [S; 2] {
-    let (a, b) = shape.semi_axes();
+pub fn geodetic<S: Scalar>(position: &Vector3<S>, (a, b): (f64, f64)) -> [S; 2] {
     let z = position.z;
     let across = (position.x * position.x + position.y * position.y).sqrt();
     let radius = length(position);

@@ -147,7 +147,7 @@ impl Forces {
     pub fn air_at(&self, time: f64, state: &State<f64>) -> AtmosphereSample<f64> {
         let shape = &self.models.planet.shape;
         let sample = match &self.models.atmosphere {
-            Atmosphere::Nrlmsise00(model) => model.sample(shape, time, &state.position),
+            Atmosphere::Nrlmsise00(model) => model.sample(shape.semi_axes(), time, &state.position),
             by_altitude => {
                 let altitude = shape.altitude(&state.position);
                 by_altitude.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere)

@@ -12,6 +12,7 @@ use super::description::{Object, Words, variant, word};
 use super::epoch::Epoch;
 use super::planet::PlanetModel;
 use super::reader::{MOST_ENTRIES, NumberOrList};
+use super::space_weather;
 
 /// The atmosphere of a request.
 #[derive(Clone, Debug)]
@@ -137,7 +138,7 @@ fn nrlmsise00(object: &mut Object, epoch: Option<Epoch>) -> Option<Atmosphere> {
             }
         }
         indices?;
-        let space_weather = crate::space_weather::at(epoch?);
+        let space_weather = space_weather::at(epoch?);
         return match space_weather {
             Ok(space_weather) => Some(of_space_weather(epoch?, space_weather)),
             Err(detail) => {

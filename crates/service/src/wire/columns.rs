@@ -370,13 +370,13 @@ impl Column {
     pub fn missing(&self, available: AvailableQuantities) -> Option<&'static str> {
         match self.requirement {
             Requirement::Temperature if !available.temperature => {
-                Some("an atmosphere with a temperature: us76, or a table with temperature")
+                Some("an atmosphere with a temperature: standard, us76 or nrlmsise00, or a table with temperature")
             }
-            Requirement::SpeedOfSound if !available.speed_of_sound => {
-                Some("an atmosphere with a speed of sound: us76, or a table with temperature or speed_of_sound")
-            }
+            Requirement::SpeedOfSound if !available.speed_of_sound => Some(
+                "an atmosphere with a speed of sound: standard, us76 or nrlmsise00, or a table with temperature or speed_of_sound",
+            ),
             Requirement::Pressure if !available.pressure => {
-                Some("an atmosphere with a pressure: us76, or a table with pressure")
+                Some("an atmosphere with a pressure: standard, us76 or nrlmsise00, or a table with pressure")
             }
             Requirement::Epoch if available.epoch.is_none() => Some("an epoch"),
             Requirement::Heating if !available.heating => Some("heating"),

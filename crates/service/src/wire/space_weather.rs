@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use reentry::atmosphere::nrlmsise00::{Ap, SpaceWeather};
 
-use crate::wire::epoch::{Epoch, day_of};
+use super::epoch::{Epoch, day_of};
 
 /// The file that the program is started with; none where it is started without.
 static FILE: OnceLock<Records> = OnceLock::new();
