@@ -228,7 +228,7 @@ fn fly_both(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { max_shrink_iters: 0, ..config(20) })]
+    #![proptest_config(ProptestConfig { max_shrink_iters: 0, ..config(8) })]
 
     #[test]
     fn flights_at_mars_are_those_of_another_integration(entry in random_entry([90e3, 150e3], [3000.0, 7500.0])) {
