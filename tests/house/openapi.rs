@@ -554,12 +554,18 @@ async fn schema_and_service_agree_on_every_mutant_of_what_is_shown() {
                 for value in [json!(null), json!([]), json!("13")] {
                     let what = format!("{name} with {value} at {pointer}");
                     let request = with(&request, &pointer, value);
-                    // Any text is a name, and nothing need happen.
-                    if ["/name", "/events", "/release"].iter().any(|end| pointer.ends_with(end)) {
+                    // Any text is a name, and nothing need happen or end the flight.
+                    if ["/name", "/events", "/release", "/stop/when"].iter().any(|end| pointer.ends_with(end)) {
                         agreement.agree(path, &request, &what).await;
                     } else {
                         agreement.refused(path, &request, &what).await;
                     }
+                }
+                // The place is on its planet: a schema does not see that it is inside of another.
+                if ["mars", "titan"].contains(&name.as_str())
+                    && ["/planet", "/planet/model"].contains(&pointer.as_str())
+                {
+                    continue;
                 }
                 // Where all fields have defaults, an empty object is complete.
                 let emptied = with(&request, &pointer, json!({}));

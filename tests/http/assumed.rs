@@ -387,7 +387,13 @@ async fn every_example_downloads_in_every_format() {
     let examples = examples();
     assert!(examples.len() > 30, "{}", examples.len());
     for (name, case) in examples {
+        let planet = case["planet"]["model"].as_str().unwrap_or("earth_wgs84");
         for format in ["json", "csv", "geojson", "kml", "czml"] {
+            // Viewers have a globe of the Earth, and those of KML of two others.
+            let has_globe = planet.starts_with("earth") || planet == "custom" || format == "kml" && planet == "mars";
+            if ["kml", "czml"].contains(&format) && !has_globe {
+                continue;
+            }
             let answer = service.post(&format!("/simulate?format={format}"), &case).await;
             assert_eq!(answer.status.as_u16(), 200, "{name} as {format}: {}", String::from_utf8_lossy(&answer.body));
             assert!(answer.body.len() > 500, "{name} as {format}");

@@ -48,7 +48,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 Kind::BooleanOrObject => "must be true, false or an object with outputs and numbers",
                 Kind::False => "must be false",
                 Kind::Object => "must be an object",
-                Kind::TextOrObject => "must be a string or an object",
+                Kind::TextOrObject => "must be ",
                 Kind::Vector | Kind::Numbers => "must be an array of numbers",
                 Kind::Matrix => "must be an array of arrays of numbers",
                 Kind::Names => "must be an array of names",
