@@ -545,7 +545,7 @@ impl Kind {
         if !matches!(self, Vector | Numbers | NumberOrNumbers(_) | Matrix | Names | Texts | TextOrTexts | Objects) {
             wrong.push(json!([1, 2, 3]));
         }
-        if !matches!(self, Object | Command(_) | Thrust | NameOrObject | BooleanOrObject) {
+        if !matches!(self, Object | Command(_) | Thrust | NameOrObject | TextOrObject | BooleanOrObject) {
             wrong.push(json!({"value": 1}));
         }
         wrong
