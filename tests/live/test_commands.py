@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import datetime
 import io
 import json
 import os
@@ -40,6 +41,29 @@ def test_the_answer_is_that_of_the_service(service):
     assert reproducible(json.loads(run("simulate", TARGET).stdout)) == reproducible(json.loads(post(service, "/simulate", text)))
     assert run("simulate", TARGET, "--format", "csv").stdout.encode() == post(service, "/simulate?format=csv", text)
     assert run("convert", STATE).stdout.encode() == post(service, "/convert", Path(STATE).read_text()) + b"\n"
+
+
+def test_indices_of_space_weather_come_from_a_file(tmp_path):
+    days = [datetime.date(2026, 1, 1) + datetime.timedelta(day) for day in range(100)]
+    rows = [f"{day:%Y %m %d} 0 0.5 2626 4 {'2.0 ' * 8}{'7 ' * 8}7 58 120.0 999.0 1" for day in days]
+    file = tmp_path / "indices.txt"
+    file.write_text("\n".join(["# as the GFZ writes them", *rows]) + "\n")
+    case = {**CASE, "epoch": "2026-02-20T12:00:00Z", "atmosphere": {"type": "nrlmsise00", "indices": "file"}}
+    cases = tmp_path / "case.json"
+    cases.write_text(json.dumps(case))
+    flown = json.loads(run("simulate", str(cases), "--space-weather", str(file)).stdout)
+    taken = {"f107": 120.0, "f107_average": 120.0, "ap": 7.0, "ap_history": [7.0] * 7}
+    assert flown["models"]["space_weather"] == taken
+    assert "without --space-weather" in run("simulate", str(cases)).stderr
+    cases.write_text(json.dumps({**case, "epoch": "2026-01-15T12:00:00Z"}))
+    early = run("--space-weather", str(file), "simulate", str(cases))
+    assert early.returncode == 1
+    assert "/atmosphere/indices" in early.stderr
+    assert "2026-01-01 to 2026-04-10" in early.stderr
+    file.write_text("nonsense\n")
+    assert run("--space-weather", str(file), "planets").returncode == 2
+    assert run("--space-weather", str(tmp_path / "none.txt"), "planets").returncode == 3
+    assert len(json.loads(run("planets").stdout)["planets"]) == 11
 
 
 def test_a_state_is_json_and_no_table():
