@@ -114,6 +114,7 @@ const ATMOSPHERES: Record<Schemas['Atmosphere']['type'], string> = {
   standard: 'standard atmosphere',
   exponential: 'exponential atmosphere',
   us76: 'U.S. Standard Atmosphere 1976',
+  nrlmsise00: 'NRLMSISE-00',
   layered_exponential: 'layered exponential atmosphere',
   table: 'tabulated atmosphere',
   vacuum: 'no atmosphere',
