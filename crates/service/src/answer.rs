@@ -76,7 +76,7 @@ fn work(flight: &Trajectory, points: Option<&[FlightPoint]>) -> Work {
 
 fn requested_output(format: Format) -> RequestedOutput {
     match format {
-        Format::Json | Format::Ndjson => RequestedOutput::Answer,
+        Format::Json | Format::Ndjson | Format::Text => RequestedOutput::Answer,
         Format::Csv => RequestedOutput::Rows,
         Format::Geojson | Format::Kml | Format::Czml => RequestedOutput::Map,
     }

@@ -3,6 +3,7 @@
 pub mod cases;
 pub mod healthcheck;
 mod in_order;
+pub mod licences;
 mod output;
 pub mod validate;
 
@@ -17,6 +18,7 @@ use clap_complete::Shell;
 use crate::answer;
 use crate::cli::cases::{Cases, States};
 use crate::cli::healthcheck::Healthcheck;
+use crate::cli::licences::Licences;
 use crate::cli::output::Output;
 use crate::cli::validate::Validate;
 use crate::config::Config;
@@ -76,6 +78,8 @@ pub enum Command {
     Validate(Validate),
     /// Check whether the service on this machine is running; for containers without another HTTP client
     Healthcheck(Healthcheck),
+    /// Print the licences of the program and of everything in it: GET /licences
+    Licences(Licences),
     /// Print the OpenAPI document
     Openapi,
     /// Print a completion script for a shell
@@ -225,6 +229,7 @@ impl Command {
                 healthcheck.run()?;
                 print(b"ok\n")
             }
+            Self::Licences(licences) => licences.run(),
             Self::Openapi => print(format!("{:#}\n", document()).as_bytes()),
             Self::Completions { shell } => {
                 let mut script = Vec::new();

@@ -48,12 +48,13 @@ schemas `x-unit` is the unit of a field, `angle` for the one of `angle_unit`.
 `type` answers a page that says what to do, as does `/warnings/CODE` for the warnings of an answer.";
 
 /// The paths in the order in which a reader needs them.
-const ORDER: [&str; 8] = [
+const ORDER: [&str; 9] = [
     "/simulate",
     "/simulate/batch",
     "/convert",
     "/analytic",
     "/validation",
+    "/licences",
     "/health/live",
     "/health/ready",
     "/metrics",
@@ -102,6 +103,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
             ("/simulate/batch", "post", json!(["ndjson"])),
             ("/convert", "post", json!(["json"])),
             ("/validation", "get", json!(["json"])),
+            ("/licences", "get", json!(["text", "json"])),
         ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut(method)) {
                 // A request without a body has no fault of one.

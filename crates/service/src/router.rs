@@ -13,7 +13,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::config::Origins;
-use crate::endpoints::{analytic, batch, convert, docs, guide, health, metrics, page, simulate, validation};
+use crate::endpoints::{analytic, batch, convert, docs, guide, health, licences, metrics, page, simulate, validation};
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, check_head, limit, observe, protect};
 use crate::openapi::{self, Document};
@@ -28,6 +28,7 @@ fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(convert::convert))
         .routes(routes!(analytic::analytic))
         .routes(routes!(validation::validation))
+        .routes(routes!(licences::licences))
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
 }
