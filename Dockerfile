@@ -12,7 +12,7 @@ FROM rust:1.95-bookworm AS build
 WORKDIR /src
 # `tests` is a member of the workspace, which cargo reads as a whole, and has the reference cases, which the service holds, as it does
 # the examples of its document.
-COPY Cargo.toml Cargo.lock ./
+COPY Cargo.toml Cargo.lock LICENSE-MIT LICENSE-APACHE ./
 COPY crates crates
 COPY tests tests
 COPY openapi/examples openapi/examples

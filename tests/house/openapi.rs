@@ -635,6 +635,11 @@ async fn the_planets_are_valid() {
 }
 
 #[tokio::test]
+async fn the_licences_are_valid() {
+    is_valid(&schema("Licences"), &Service::new().get("/licences?format=json").await.json(), "the licences");
+}
+
+#[tokio::test]
 async fn problem_documents_are_valid() {
     let service = Service::new();
     let schema = schema("Problem");
@@ -734,7 +739,7 @@ fn every_operation_and_response_has_a_description() {
         }
     }
     let given: Vec<_> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
-    for path in ["/simulate", "/analytic", "/convert", "/validation", "/health/live", "/health/ready"] {
+    for path in ["/simulate", "/analytic", "/convert", "/validation", "/licences", "/health/live", "/health/ready"] {
         assert!(given.contains(&path), "{path}");
     }
 }

@@ -26,7 +26,7 @@ const SERVICE: [&[&str]; 13] = [
     &["client"],
     &["memory"],
     &["error", "telemetry"],
-    &["embedded", "format", "openapi", "rate"],
+    &["embedded", "format", "licences", "openapi", "rate"],
     &["compute"],
     &["state"],
     &["middleware", "answer"],

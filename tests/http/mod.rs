@@ -23,6 +23,7 @@ mod convert;
 mod events;
 mod frames;
 mod heating;
+mod licences;
 mod limits;
 mod metrics;
 mod models;

@@ -377,6 +377,14 @@ def test_the_validation_is_that_of_the_service_and_fits_its_schema(service):
     assert all(check["passed"] == (True if check["kind"] == "reference" else None) for check in validation["checks"])
 
 
+def test_the_licences_are_those_of_the_service(service):
+    for of_format in ("text", "json"):
+        result = run("licences", "--format", of_format)
+        assert (result.returncode, result.stderr) == (0, "")
+        assert result.stdout.rstrip("\n").encode() == service.get(f"/licences?format={of_format}").body.rstrip(b"\n")
+    assert run("licences").stdout.startswith("reentry ")
+
+
 def test_the_guide_has_the_validation_as_it_is_shipped():
     result = run("validate", "--format", "markdown")
     assert result.returncode == 0

@@ -99,7 +99,7 @@ pub fn simulate(input: &[u8]) -> bool {
         }
         Format::Csv => is_table(&bytes, &tree),
         Format::Geojson | Format::Czml => drop(strict(&bytes, &tree)),
-        Format::Kml | Format::Ndjson => drop(good(String::from_utf8(bytes), &tree)),
+        Format::Kml | Format::Ndjson | Format::Text => drop(good(String::from_utf8(bytes), &tree)),
     }
     true
 }

@@ -1,7 +1,9 @@
-//! Writes the tables of the page's files and of the guide's, by which they are compiled into the program.
+//! Writes the tables of the page's files and of the guide's, by which they are compiled into the program, and its licences.
 
 #[path = "guide.rs"]
 mod guide;
+#[path = "licences.rs"]
+mod licences;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -22,9 +24,10 @@ fn main() -> io::Result<()> {
     let root = fs::canonicalize(if built { BUILT } else { FALLBACK })?;
     write_table(&root, &page_files(&root)?, &out.join("page.rs"))?;
 
-    for source in guide::SOURCES {
+    for source in guide::SOURCES.iter().chain(&licences::SOURCES) {
         println!("cargo:rerun-if-changed={source}");
     }
+    licences::write(&root, &out.join("licences.json.gz"))?;
     let root = out.join("guide");
     write_table(&root, &guide::write(&root)?, &out.join("guide.rs"))
 }

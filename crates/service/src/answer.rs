@@ -81,7 +81,7 @@ fn work(flight: &Trajectory, points: Option<&[FlightPoint]>) -> Work {
 
 fn requested_output(format: Format) -> RequestedOutput {
     match format {
-        Format::Json | Format::Ndjson => RequestedOutput::Answer,
+        Format::Json | Format::Ndjson | Format::Text => RequestedOutput::Answer,
         Format::Csv => RequestedOutput::Rows,
         Format::Geojson | Format::Kml | Format::Czml => RequestedOutput::Map,
     }
@@ -92,7 +92,7 @@ fn globe_fault(planet: &Planet, format: Format) -> Option<Fault> {
     match format {
         Format::Kml => Track::kml_fault(planet),
         Format::Czml => Track::czml_fault(planet),
-        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson => None,
+        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson | Format::Text => None,
     }
 }
 

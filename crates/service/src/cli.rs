@@ -3,6 +3,7 @@
 pub mod cases;
 pub mod healthcheck;
 mod in_order;
+pub mod licences;
 mod output;
 pub mod validate;
 
@@ -18,6 +19,7 @@ use clap_complete::Shell;
 use crate::answer;
 use crate::cli::cases::{Cases, States};
 use crate::cli::healthcheck::Healthcheck;
+use crate::cli::licences::Licences;
 use crate::cli::output::Output;
 use crate::cli::validate::Validate;
 use crate::config::Config;
@@ -86,6 +88,8 @@ pub enum Command {
     Planets,
     /// Check whether the service on this machine is running; for containers without another HTTP client
     Healthcheck(Healthcheck),
+    /// Print the licences of the program and of everything in it: GET /licences
+    Licences(Licences),
     /// Print the OpenAPI document
     Openapi,
     /// Print a completion script for a shell
@@ -257,6 +261,7 @@ impl Command {
                 let planets = Planets::all().and_then(|planets| serde_json::to_string_pretty(&planets));
                 print(format!("{}\n", planets.map_err(io::Error::from)?).as_bytes())
             }
+            Self::Licences(licences) => licences.run(),
             Self::Openapi => print(format!("{:#}\n", document()).as_bytes()),
             Self::Completions { shell } => {
                 let mut script = Vec::new();

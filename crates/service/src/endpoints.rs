@@ -11,6 +11,7 @@ pub mod convert;
 pub mod docs;
 pub mod guide;
 pub mod health;
+pub mod licences;
 pub mod metrics;
 pub mod page;
 pub mod planets;

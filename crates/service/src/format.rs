@@ -24,6 +24,9 @@ pub enum Format {
     /// A line of JSON for each case of a batch, application/x-ndjson
     #[value(skip)]
     Ndjson,
+    /// Text to read, text/plain
+    #[value(skip)]
+    Text,
 }
 
 impl Format {
@@ -41,6 +44,7 @@ impl Format {
             Self::Kml => "kml",
             Self::Czml => "czml",
             Self::Ndjson => "ndjson",
+            Self::Text => "text",
         }
     }
 
@@ -59,6 +63,7 @@ impl Format {
             Self::Kml => "application/vnd.google-earth.kml+xml",
             Self::Czml => "application/czml+json",
             Self::Ndjson => "application/x-ndjson",
+            Self::Text => "text/plain; charset=utf-8",
         }
     }
 

@@ -15,6 +15,7 @@ pub mod endpoints;
 pub mod error;
 pub mod extract;
 pub mod format;
+pub mod licences;
 pub mod memory;
 pub mod metrics;
 pub mod middleware;

@@ -48,7 +48,7 @@ schemas `x-unit` is the unit of a field, `angle` for the one of `angle_unit`.
 `type` answers a page that says what to do, as does `/warnings/CODE` for the warnings of an answer.";
 
 /// The paths in the order in which a reader needs them.
-const ORDER: [&str; 10] = [
+const ORDER: [&str; 11] = [
     "/simulate",
     "/simulate/batch",
     "/convert",
@@ -56,6 +56,7 @@ const ORDER: [&str; 10] = [
     "/planets",
     "/sites",
     "/validation",
+    "/licences",
     "/health/live",
     "/health/ready",
     "/metrics",
@@ -105,6 +106,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
             ("/convert", "post", json!(["json"])),
             ("/sites", "get", json!(["json", "csv", "geojson"])),
             ("/validation", "get", json!(["json"])),
+            ("/licences", "get", json!(["text", "json"])),
         ] {
             if let Some(operation) = paths.get_mut(path).and_then(|path| path.get_mut(method)) {
                 // A request without a body has no fault of one.

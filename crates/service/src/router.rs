@@ -14,7 +14,7 @@ use utoipa_axum::routes;
 
 use crate::config::Origins;
 use crate::endpoints::{
-    analytic, batch, convert, docs, guide, health, metrics, page, planets, simulate, sites, validation,
+    analytic, batch, convert, docs, guide, health, licences, metrics, page, planets, simulate, sites, validation,
 };
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, check_head, limit, observe, protect};
@@ -32,6 +32,7 @@ fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(planets::planets))
         .routes(routes!(sites::sites))
         .routes(routes!(validation::validation))
+        .routes(routes!(licences::licences))
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
 }

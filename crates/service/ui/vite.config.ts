@@ -8,12 +8,28 @@ export default defineConfig({
   base: './',
   plugins: [examples(), schema(), compress()],
   oxc: { jsx: { runtime: 'automatic', importSource: 'preact' } },
-  build: { target: 'es2022', sourcemap: false, modulePreload: { polyfill: false }, assetsInlineLimit: 0 },
+  build: {
+    target: 'es2022',
+    sourcemap: false,
+    modulePreload: { polyfill: false },
+    assetsInlineLimit: 0,
+    license: { fileName: 'licences.json' },
+  },
   server: {
     proxy: Object.fromEntries(
-      ['/simulate', '/convert', '/analytic', '/validation', '/docs', '/guide', '/problems', '/warnings', '/openapi.json', '/health'].map(
-        (path) => [path, 'http://127.0.0.1:8080'],
-      ),
+      [
+        '/simulate',
+        '/convert',
+        '/analytic',
+        '/validation',
+        '/licences',
+        '/docs',
+        '/guide',
+        '/problems',
+        '/warnings',
+        '/openapi.json',
+        '/health',
+      ].map((path) => [path, 'http://127.0.0.1:8080']),
     ),
   },
   test: { include: ['test/unit/**/*.test.ts'] },

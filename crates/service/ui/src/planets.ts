@@ -46,6 +46,8 @@ export function airOfEarth(atmosphere: Case['atmosphere']): string | null {
   switch (atmosphere?.type) {
     case 'us76':
       return 'U.S. Standard Atmosphere 1976';
+    case 'nrlmsise00':
+      return 'NRLMSISE-00';
     case 'exponential':
       return atmosphere.surface_density === undefined || atmosphere.scale_height === undefined
         ? 'exponential atmosphere of the thesis'
