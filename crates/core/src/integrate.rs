@@ -1,22 +1,30 @@
-//! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), its error kept below a tolerance step by step.
+//! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), and where y' = f(y) is stiff with the implicit method Radau IIA of order
+//! 5, the error kept below a tolerance step by step.
 //!
 //! This module knows nothing of flight: a [`System`] says how the state changes, an [`Integrator`] takes steps,
 //! the [`Interpolant`] of a [`Step`] gives the state at every instant inside it, and [`event`] looks there for falls through zero and
 //! for maxima.
 
 mod any_step;
+mod elimination;
 pub mod event;
+mod radau;
 mod step;
 mod tableau;
 
+pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 
 pub(crate) use any_step::AnyStep;
 
 use std::array::from_fn;
 
+use nalgebra::Const;
+use num_dual::DualSVec64;
+
 use crate::interrupt::Interrupt;
-use crate::scalar::Lanes;
+use crate::scalar::{Lanes, Scalar};
+use step::Inside;
 
 /// A system of `N` ordinary differential equations.
 pub trait System<S, const N: usize> {
@@ -29,10 +37,33 @@ pub trait StepBounds<const N: usize>: System<f64, N> {
     /// The typical size of each component; a component's tolerance is relative to the larger of its size and this.
     fn magnitudes(&self) -> [f64; N];
 
-    /// The longest step that may start here, in seconds: a step must not jump over something that it cannot see.
+    /// The longest step that may start here, in seconds: a step must not jump over something that it cannot see, and an explicit one must
+    /// not be so long that it is unstable.
     fn longest_step(&self, _time: f64, _state: &[f64; N]) -> f64 {
         f64::INFINITY
     }
+
+    /// The longest implicit step that may start here, in seconds. Where it is much longer than the longest explicit one, and that is
+    /// shorter than accuracy asks for, the system is stiff.
+    fn longest_implicit_step(&self, time: f64, state: &[f64; N]) -> f64 {
+        self.longest_step(time, state)
+    }
+
+    /// How the rates of change depend on the state: row by row ∂fᵢ/∂yⱼ. Implicit steps need it, for their iterations alone: they need not
+    /// have it exactly, and those of a system that is not stiff do without.
+    fn jacobian(&self, _time: f64, _state: &[f64; N]) -> [[f64; N]; N] {
+        [[0.0; N]; N]
+    }
+}
+
+/// The Jacobian of a system in dual numbers, for [`StepBounds::jacobian`].
+pub fn jacobian<F: System<DualSVec64<N>, N>, const N: usize>(system: &F, time: f64, state: &[f64; N]) -> [[f64; N]; N]
+where
+    DualSVec64<N>: Scalar<Value = f64>,
+{
+    let variables = from_fn(|i| DualSVec64::from_re(state[i]).derivative(i));
+    let rates = system.derivative(time.into(), &variables);
+    rates.map(|rate| rate.eps.unwrap_generic(Const::<N>, Const::<1>).into())
 }
 
 /// Why the integration cannot go on.
@@ -67,7 +98,7 @@ pub struct Statistics {
     pub steps: usize,
     /// Steps that were tried and missed the tolerance.
     pub rejected_steps: usize,
-    /// Evaluations of the derivative.
+    /// Evaluations of the derivative; a Jacobian counts as one, and one for each of its columns.
     pub evaluations: usize,
 }
 
@@ -121,6 +152,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         &self.derivative
     }
 
+    /// Whether the next step is an implicit one, since the system is stiff here.
+    pub fn is_stiff(&self) -> bool {
+        self.control.stiffness.is_found
+    }
+
     /// Takes one step, which ends at `end` at the latest.
     ///
     /// # Errors
@@ -128,10 +164,22 @@ impl<'a, const N: usize> Integrator<'a, N> {
     pub fn advance<F: StepBounds<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
         loop {
             let trial_end = self.control.trial_end(end)?;
-            let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, self.control.length);
-            if self.control.accepts(&self.state, &trial) {
-                let end_derivative = system.derivative(trial_end, &trial.end);
-                return Ok(self.take(system, trial, trial_end, end_derivative));
+            if self.is_stiff() {
+                match self.attempt_implicit(system, self.control.length) {
+                    Some(trial) if self.control.accepts_implicit(&self.state, &trial) => {
+                        return Ok(self.take_implicit(system, trial, trial_end));
+                    }
+                    Some(_) => {}
+                    None => self.control.reject(NOT_CONVERGED_SHRINK),
+                }
+                self.limit_implicit(system);
+            } else {
+                let Self { control, state, derivative } = self;
+                let trial = step::attempt(system, control.time, state, derivative, control.length);
+                if control.accepts(state, &trial) {
+                    let end_derivative = system.derivative(trial_end, &trial.end);
+                    return Ok(self.take(system, trial, trial_end, end_derivative));
+                }
             }
         }
     }
@@ -139,17 +187,24 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
     pub fn shorten<F: StepBounds<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
-        let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, end - step.start_time);
+        let length = end - step.start_time;
+        if step.is_implicit()
+            && let Some(trial) = self.attempt_implicit(system, length)
+        {
+            return self.take_implicit(system, trial, end);
+        }
+        let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, length);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
         let end_derivative = system.derivative(end, &trial.end);
         self.take(system, trial, end, end_derivative)
     }
 
-    /// Goes on from the end of a step with a system, or a state, that changes there.
+    /// Goes on from the end of a step with a system, or a state, that changes there. What decays fast there is to be followed first.
     pub fn restart<F: StepBounds<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
         (self.control.time, self.state) = (time, state);
         self.derivative = system.derivative(self.control.time, &self.state);
         self.control.statistics.evaluations += 1;
+        self.control.stiffness = Stiffness::default();
         self.control.shorten(system.longest_step(self.control.time, &self.state));
     }
 
@@ -162,9 +217,49 @@ impl<'a, const N: usize> Integrator<'a, N> {
         end_derivative: [f64; N],
     ) -> Step<N> {
         let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
-        (self.control.time, self.state, self.derivative) = (end_time, step.end, end_derivative);
-        self.control.shorten(system.longest_step(end_time, &self.state));
+        self.go_to_end(&step);
+        let longest = system.longest_step(end_time, &self.state);
+        self.control.limit(longest, || system.longest_implicit_step(end_time, &self.state));
         step
+    }
+
+    /// Tries an implicit step of a length, s.
+    fn attempt_implicit<F: StepBounds<N>>(&mut self, system: &F, length: f64) -> Option<radau::Trial<N>> {
+        let Self { control, state, derivative } = self;
+        let start = radau::Start { time: control.time, state, derivative };
+        let size = |change: &[f64; N]| control.size(change, state, state);
+        let mut evaluations = 0;
+        let trial = radau::attempt(system, &start, length, size, &mut evaluations);
+        control.statistics.evaluations += evaluations;
+        trial
+    }
+
+    /// Goes to the end of an implicit trial step.
+    fn take_implicit<F: StepBounds<N>>(&mut self, system: &F, trial: radau::Trial<N>, end_time: f64) -> Step<N> {
+        let step = Step {
+            start_time: self.control.time,
+            end_time,
+            start: self.state,
+            end: trial.end,
+            start_derivative: self.derivative,
+            end_derivative: system.derivative(end_time, &trial.end),
+            inside: Inside::Implicit(trial.inside),
+        };
+        self.control.statistics.evaluations += 1;
+        self.go_to_end(&step);
+        self.limit_implicit(system);
+        step
+    }
+
+    /// Keeps the next implicit step within its bounds, or goes back to explicit ones.
+    fn limit_implicit<F: StepBounds<N>>(&mut self, system: &F) {
+        let Self { control, state, .. } = self;
+        let time = control.time;
+        control.limit_implicit(system.longest_step(time, state), || system.longest_implicit_step(time, state));
+    }
+
+    fn go_to_end(&mut self, step: &Step<N>) {
+        (self.control.time, self.state, self.derivative) = (step.end_time, step.end, step.end_derivative);
     }
 }
 
@@ -172,7 +267,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
 ///
 /// Each lane has an integrator, its own system, and its end, s. A lane whose trial meets its tolerance advances by it; the others will
 /// try a shorter one the next time. A lane without an integrator is idle. The steps are those that the integrators would take alone,
-/// to the last digit.
+/// to the last digit; explicit ones: an integrator whose system [is stiff](Integrator::is_stiff) has to take its next step alone.
 ///
 /// # Errors
 /// Lane by lane those of [`Integrator::advance`].
@@ -231,7 +326,25 @@ struct StepControl<'a, const N: usize> {
     stride: f64,
     /// By how much the next accepted step may lengthen it: not at all after a rejected one.
     growth: f64,
+    stiffness: Stiffness,
     statistics: Statistics,
+}
+
+/// What the explicit steps tell of stiffness.
+#[derive(Debug)]
+struct Stiffness {
+    /// Whether implicit steps are taken.
+    is_found: bool,
+    /// Explicit steps, one after the other, that accuracy would have let be much longer.
+    restrained: usize,
+    /// So many of them make the system stiff; more after implicit steps that did not pay.
+    patience: usize,
+}
+
+impl Default for Stiffness {
+    fn default() -> Self {
+        Self { is_found: false, restrained: 0, patience: PATIENCE }
+    }
 }
 
 impl<'a, const N: usize> StepControl<'a, N> {
@@ -246,8 +359,17 @@ impl<'a, const N: usize> StepControl<'a, N> {
         #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
         let counted = magnitudes.iter().filter(|magnitude| magnitude.is_finite()).count() as f64;
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
-        let mut control =
-            Self { limits, magnitudes, counted, time, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
+        let mut control = Self {
+            limits,
+            magnitudes,
+            counted,
+            time,
+            length: 0.0,
+            stride: 0.0,
+            growth: GREATEST_GROWTH,
+            stiffness: Stiffness::default(),
+            statistics,
+        };
         control.length = control.first_step(system, state, derivative);
         control
     }
@@ -278,32 +400,83 @@ impl<'a, const N: usize> StepControl<'a, N> {
         self.length = self.length.min(longest);
     }
 
+    /// Keeps the next step within the longest explicit one. Where accuracy would long have let the steps be much longer, it is an implicit one,
+    /// if that may be much longer.
+    fn limit(&mut self, longest: f64, longest_implicit: impl FnOnce() -> f64) {
+        let Stiffness { is_found, restrained, patience } = &mut self.stiffness;
+        *restrained = if self.length > longest { *restrained + 1 } else { 0 };
+        self.length = self.length.min(longest);
+        if *restrained >= *patience {
+            *restrained = 0;
+            *is_found = longest_implicit() > ADVANTAGE * longest;
+            self.length *= if *is_found { ADVANTAGE } else { 1.0 };
+        }
+    }
+
+    /// Keeps the next implicit step within the longest one. Where it would hardly be longer than an explicit one, it is that.
+    fn limit_implicit(&mut self, longest_explicit: f64, longest: impl FnOnce() -> f64) {
+        if self.length < LEAST_ADVANTAGE * longest_explicit {
+            let patience = self.stiffness.patience * 2;
+            self.stiffness = Stiffness { patience, ..Stiffness::default() };
+            self.length = self.length.min(longest_explicit);
+        } else {
+            self.length = self.length.min(longest());
+        }
+    }
+
     /// Whether the error of the trial step is small enough; proposes the length of the next one.
     fn accepts(&mut self, start: &[f64; N], trial: &step::Trial<f64, N>) -> bool {
         let error = self.error(start, trial);
         self.statistics.evaluations += step::TRIAL_EVALUATIONS;
         // The eighth root.
-        let fitting = SAFETY / error.sqrt().sqrt().sqrt();
+        let accepted = self.decide(error, SAFETY / error.sqrt().sqrt().sqrt());
+        self.statistics.evaluations += usize::from(accepted);
+        accepted
+    }
+
+    /// Whether the error of the implicit trial step is small enough; proposes the length of the next one.
+    fn accepts_implicit(&mut self, start: &[f64; N], trial: &radau::Trial<N>) -> bool {
+        let error = self.size(&trial.error, start, &trial.end);
+        self.decide(error, SAFETY / error.sqrt().sqrt())
+    }
+
+    /// Whether an error, as a multiple of the tolerance, is small enough; `fitting`: how many times as long a step would have the tolerance as
+    /// its error.
+    fn decide(&mut self, error: f64, fitting: f64) -> bool {
         let accepted = error < 1.0;
         if accepted {
-            self.statistics.evaluations += 1;
             self.statistics.steps += 1;
             self.length = (self.length * self.growth.min(fitting).max(LEAST_GROWTH)).max(self.stride);
             self.growth = GREATEST_GROWTH;
         } else {
-            self.statistics.rejected_steps += 1;
-            self.length *= if error.is_finite() { fitting.max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK };
-            self.growth = 1.0;
+            self.reject(if error.is_finite() { fitting.max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK });
         }
         accepted
+    }
+
+    /// Makes the next trial shorter.
+    fn reject(&mut self, shrink: f64) {
+        self.statistics.rejected_steps += 1;
+        self.length *= shrink;
+        self.growth = 1.0;
+    }
+
+    /// The size of a change of the state in a step, as a multiple of the tolerance.
+    fn size(&self, change: &[f64; N], start: &[f64; N], end: &[f64; N]) -> f64 {
+        let part = |i: usize| change[i] / (self.limits.relative_tolerance * self.size_of(i, start, end));
+        ((0..N).map(|i| part(i).powi(2)).sum::<f64>() / self.counted).sqrt()
+    }
+
+    /// The size of a number of the state, to which its error is relative.
+    fn size_of(&self, i: usize, start: &[f64; N], end: &[f64; N]) -> f64 {
+        start[i].abs().max(end[i].abs()).max(self.magnitudes[i])
     }
 
     /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
     fn error(&self, start: &[f64; N], trial: &step::Trial<f64, N>) -> f64 {
         let [mut fifth, mut third] = [0.0; 2];
-        for (i, magnitude) in self.magnitudes.iter().enumerate() {
-            let size = start[i].abs().max(trial.end[i].abs()).max(*magnitude);
-            let weight = 1.0 / (self.limits.relative_tolerance * size);
+        for i in 0..N {
+            let weight = 1.0 / (self.limits.relative_tolerance * self.size_of(i, start, &trial.end));
             fifth += (trial.error_fifth[i] * weight).powi(2);
             third += (trial.error_third[i] * weight).powi(2);
         }
@@ -339,5 +512,12 @@ const SAFETY: f64 = 0.9;
 const LEAST_GROWTH: f64 = 1.0 / 3.0;
 const GREATEST_GROWTH: f64 = 6.0;
 const NOT_FINITE_SHRINK: f64 = 0.1;
+const NOT_CONVERGED_SHRINK: f64 = 0.3;
+/// How many times as long as a stable explicit step another has to be to count as much longer: an implicit one costs as much as one and a half.
+const ADVANTAGE: f64 = 3.0;
+/// Implicit steps go on as long as they are so many times as long as explicit ones.
+const LEAST_ADVANTAGE: f64 = 2.0;
+/// Explicit steps that are restrained before implicit ones are tried: what decays fast is to be gone by then.
+const PATIENCE: usize = 4;
 /// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.
 const LEAST_LENGTH: f64 = 1e-18;
