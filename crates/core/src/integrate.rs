@@ -23,7 +23,7 @@ use nalgebra::Const;
 use num_dual::DualSVec64;
 
 use crate::interrupt::Interrupt;
-use crate::scalar::{Lanes, Scalar};
+use crate::scalar::Lanes;
 use step::Inside;
 
 /// A system of `N` ordinary differential equations.
@@ -49,21 +49,27 @@ pub trait StepBounds<const N: usize>: System<f64, N> {
         self.longest_step(time, state)
     }
 
-    /// How the rates of change depend on the state: row by row ∂fᵢ/∂yⱼ. Implicit steps need it, for their iterations alone: they need not
-    /// have it exactly, and those of a system that is not stiff do without.
+    /// How the rates of change depend on the state: row by row ∂fᵢ/∂yⱼ. Implicit steps need it, for their iterations alone: columns by which
+    /// nothing changes fast may be left 0.
     fn jacobian(&self, _time: f64, _state: &[f64; N]) -> [[f64; N]; N] {
         [[0.0; N]; N]
     }
 }
 
-/// The Jacobian of a system in dual numbers, for [`StepBounds::jacobian`].
-pub fn jacobian<F: System<DualSVec64<N>, N>, const N: usize>(system: &F, time: f64, state: &[f64; N]) -> [[f64; N]; N]
-where
-    DualSVec64<N>: Scalar<Value = f64>,
-{
-    let variables = from_fn(|i| DualSVec64::from_re(state[i]).derivative(i));
-    let rates = system.derivative(time.into(), &variables);
-    rates.map(|rate| rate.eps.unwrap_generic(Const::<N>, Const::<1>).into())
+/// The first `K` columns of the Jacobian of a system, in dual numbers; the others are left 0.
+pub fn jacobian<F: System<DualSVec64<K>, N>, const N: usize, const K: usize>(
+    system: &F,
+    time: f64,
+    state: &[f64; N],
+) -> [[f64; N]; N] {
+    let variables = from_fn(|i| {
+        let number = DualSVec64::<K>::from_re(state[i]);
+        if i < K { number.derivative(i) } else { number }
+    });
+    system.derivative(time.into(), &variables).map(|rate| {
+        let slopes = rate.eps.unwrap_generic(Const::<K>, Const::<1>);
+        from_fn(|j| if j < K { slopes[j] } else { 0.0 })
+    })
 }
 
 /// Why the integration cannot go on.
@@ -98,7 +104,7 @@ pub struct Statistics {
     pub steps: usize,
     /// Steps that were tried and missed the tolerance.
     pub rejected_steps: usize,
-    /// Evaluations of the derivative; a Jacobian counts as one, and one for each of its columns.
+    /// Evaluations of the derivative; a Jacobian counts as one, and one for each of its columns that is not 0.
     pub evaluations: usize,
 }
 
@@ -335,7 +341,7 @@ struct StepControl<'a, const N: usize> {
 struct Stiffness {
     /// Whether implicit steps are taken.
     is_found: bool,
-    /// Explicit steps, one after the other, that accuracy would have let be much longer.
+    /// Explicit steps, one after the other, for which accuracy would have had the longest one, or nearly so.
     restrained: usize,
     /// So many of them make the system stiff; more after implicit steps that did not pay.
     patience: usize,
@@ -400,11 +406,11 @@ impl<'a, const N: usize> StepControl<'a, N> {
         self.length = self.length.min(longest);
     }
 
-    /// Keeps the next step within the longest explicit one. Where accuracy would long have let the steps be much longer, it is an implicit one,
-    /// if that may be much longer.
+    /// Keeps the next step within the longest explicit one. Where it is not accuracy that has long held the steps back, it is an implicit one, if that
+    /// may be much longer.
     fn limit(&mut self, longest: f64, longest_implicit: impl FnOnce() -> f64) {
         let Stiffness { is_found, restrained, patience } = &mut self.stiffness;
-        *restrained = if self.length > longest { *restrained + 1 } else { 0 };
+        *restrained = if self.length > NEARLY * longest { *restrained + 1 } else { 0 };
         self.length = self.length.min(longest);
         if *restrained >= *patience {
             *restrained = 0;
@@ -517,6 +523,8 @@ const NOT_CONVERGED_SHRINK: f64 = 0.3;
 const ADVANTAGE: f64 = 3.0;
 /// Implicit steps go on as long as they are so many times as long as explicit ones.
 const LEAST_ADVANTAGE: f64 = 2.0;
+/// Accuracy that asks for steps of this part of the longest one does so for the sake of stability: there the estimate of the error grows.
+const NEARLY: f64 = 0.75;
 /// Explicit steps that are restrained before implicit ones are tried: what decays fast is to be gone by then.
 const PATIENCE: usize = 4;
 /// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.

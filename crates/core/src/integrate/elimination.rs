@@ -19,7 +19,8 @@ impl<const N: usize> Factors<N> {
     pub(super) fn of(mut rows: [[Complex<f64>; N]; N]) -> Option<Self> {
         let mut equations = from_fn(|i| i);
         for column in 0..N {
-            let greatest = (column..N).max_by(|a, b| rows[*a][column].norm_sqr().total_cmp(&rows[*b][column].norm_sqr()))?;
+            let greatest =
+                (column..N).max_by(|a, b| rows[*a][column].norm_sqr().total_cmp(&rows[*b][column].norm_sqr()))?;
             rows.swap(column, greatest);
             equations.swap(column, greatest);
             let over_pivot = rows[column][column].inv();

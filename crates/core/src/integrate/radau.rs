@@ -42,7 +42,7 @@ pub(super) struct Start<'a, const N: usize> {
 }
 
 /// Tries a step of the given length, s; none where the iterations do not converge. `error` is the size of a change of the state as a
-/// multiple of the tolerance. Adds to the evaluations, of which a Jacobian counts as one and one for each of its columns.
+/// multiple of the tolerance. Adds to the evaluations.
 pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
     system: &F,
     start: &Start<N>,
@@ -51,8 +51,9 @@ pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
     evaluations: &mut usize,
 ) -> Option<Trial<N>> {
     let &Start { time, state, derivative } = start;
-    let newton = Newton::new(&system.jacobian(time, state), length)?;
-    *evaluations += 1 + N;
+    let jacobian = system.jacobian(time, state);
+    *evaluations += 1 + (0..N).filter(|column| jacobian.iter().any(|row| row[*column] != 0.0)).count();
+    let newton = Newton::new(&jacobian, length)?;
     let mut stages = newton.first_guess(derivative);
     let mut last: Option<f64> = None;
     for _ in 0..ITERATIONS {
@@ -148,10 +149,8 @@ impl<const N: usize> Newton<N> {
         let [f1, f2, f3] = transformed(&INVERSE, &rates);
         let [alpha, beta, gamma] = [ALPHA, BETA, GAMMA].map(|number| number / self.length);
         let real = from_fn(|i| f1[i] - w1[i] * gamma);
-        let complex = [
-            from_fn(|i| f2[i] - w2[i] * alpha + w3[i] * beta),
-            from_fn(|i| f3[i] - w3[i] * alpha - w2[i] * beta),
-        ];
+        let complex =
+            [from_fn(|i| f2[i] - w2[i] * alpha + w3[i] * beta), from_fn(|i| f3[i] - w3[i] * alpha - w2[i] * beta)];
         let [d1, _] = self.real.solve([real, [S::zero(); N]]);
         let [d2, d3] = self.complex.solve(complex);
         let change = transformed(&TRANSFORMATION, &[d1, d2, d3]);

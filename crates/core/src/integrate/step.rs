@@ -169,7 +169,12 @@ impl<const N: usize> Step<N> {
                 [f4, f5, [0.0; N], [0.0; N]]
             }
         };
-        Interpolant { start_time: self.start_time, length, start, coefficients: [increment, bend, twist, f4, f5, f6, f7] }
+        Interpolant {
+            start_time: self.start_time,
+            length,
+            start,
+            coefficients: [increment, bend, twist, f4, f5, f6, f7],
+        }
     }
 
     /// The last four of the coefficients, from the slopes that an explicit step keeps and three more.

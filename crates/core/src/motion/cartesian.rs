@@ -51,7 +51,7 @@ impl<P: Scalar> Cartesian<P> {
 
 impl<const N: usize> StepBounds<N> for Cartesian
 where
-    Self: System<f64, N> + System<DualSVec64<N>, N>,
+    Self: System<f64, N> + System<DualSVec64<6>, N>,
 {
     fn magnitudes(&self) -> [f64; N] {
         let [length, speed] = self.0.units();
@@ -67,13 +67,14 @@ where
     }
 
     fn jacobian(&self, time: f64, numbers: &[f64; N]) -> [[f64; N]; N] {
-        jacobian(self, time, numbers)
+        // Nothing changes fast by heat load and mass.
+        jacobian::<_, N, 6>(self, time, numbers)
     }
 }
 
 impl<const N: usize> Formulation<N> for Cartesian
 where
-    Self: System<f64, N> + System<DualSVec64<N>, N>,
+    Self: System<f64, N> + System<DualSVec64<6>, N>,
 {
     fn numbers<S: Scalar>(state: &State<S>) -> [S; N] {
         state.numbers(state.planet_fixed().into())
