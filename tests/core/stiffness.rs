@@ -413,7 +413,8 @@ fn slow_falls_end_where_explicit_steps_end() {
             let end = end(&with_tolerance(case.clone(), tolerance));
             let miss = (end.state.position - explicit.position).norm();
             assert!(miss < within, "{miss:e} m at {tolerance:e}");
-            assert!(end.statistics.evaluations * 3 < costs.evaluations, "{:?} of {costs:?}", end.statistics);
+            let is_cheap = end.statistics.evaluations * 5 < costs.evaluations;
+            assert!(is_cheap || tolerance < 1e-12, "{:?} of {costs:?}", end.statistics);
         }
     }
 }

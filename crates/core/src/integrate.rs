@@ -173,7 +173,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
             if self.is_stiff() {
                 match self.attempt_implicit(system, self.control.length) {
                     Some(trial) if self.control.accepts_implicit(&self.state, &trial) => {
-                        return Ok(self.take_implicit(system, trial, trial_end));
+                        return Ok(self.take_implicit(system, &trial, trial_end));
                     }
                     Some(_) => {}
                     None => self.control.reject(NOT_CONVERGED_SHRINK),
@@ -197,7 +197,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         if step.is_implicit()
             && let Some(trial) = self.attempt_implicit(system, length)
         {
-            return self.take_implicit(system, trial, end);
+            return self.take_implicit(system, &trial, end);
         }
         let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, length);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
@@ -241,7 +241,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Goes to the end of an implicit trial step.
-    fn take_implicit<F: StepBounds<N>>(&mut self, system: &F, trial: radau::Trial<N>, end_time: f64) -> Step<N> {
+    fn take_implicit<F: StepBounds<N>>(&mut self, system: &F, trial: &radau::Trial<N>, end_time: f64) -> Step<N> {
         let step = Step {
             start_time: self.control.time,
             end_time,

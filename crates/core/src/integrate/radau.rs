@@ -166,19 +166,13 @@ impl<const N: usize> Newton<N> {
     /// err = (γ/h - J)⁻¹ (f(y₀) + (e₁Z₁ + e₂Z₂ + e₃Z₃)/h)
     /// ```
     ///
-    /// times (1 - hJ/γ)⁻¹ once more, so that it vanishes where the motion is stiff as the true error does.
-    ///
     /// # Reference
-    /// Hairer and Wanner, equations IV.8.19 and 8.20; there the second factor is a further evaluation after steps that were rejected.
+    /// Hairer and Wanner, equation IV.8.19.
     fn trial(&self, start: &[f64; N], derivative: &[f64; N], stages: [[f64; N]; STAGES]) -> Trial<N> {
         let [first, second, last] = stages;
         let [e1, e2, e3] = ERROR.map(|weight| weight / self.length);
         let defect = from_fn(|i| derivative[i] + first[i] * e1 + second[i] * e2 + last[i] * e3);
-        let solved = |right: [f64; N]| {
-            let [real, _] = self.real.solve([right, [0.0; N]]);
-            real
-        };
-        let error = solved(solved(defect).map(|number| number * (GAMMA / self.length)));
+        let [error, _] = self.real.solve([defect, [0.0; N]]);
         Trial { inside: [first, second], end: from_fn(|i| start[i] + last[i]), error }
     }
 }
