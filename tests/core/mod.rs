@@ -25,5 +25,6 @@ mod properties;
 mod propulsion;
 mod sensitivities;
 mod starts;
+mod stiffness;
 mod tables;
 mod verification;

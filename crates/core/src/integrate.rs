@@ -1,22 +1,32 @@
-//! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), its error kept below a tolerance step by step.
+//! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), and where y' = f(y) is stiff with the implicit method Radau IIA of order
+//! 5, the error kept below a tolerance step by step.
 //!
 //! This module knows nothing of flight: a [`System`] says how the state changes, an [`Integrator`] takes steps,
 //! the [`Interpolant`] of a [`Step`] gives the state at every instant inside it, and [`event`] looks there for falls through zero and
 //! for maxima.
 
 mod any_step;
+mod elimination;
 pub mod event;
+mod radau;
 mod step;
+mod step_control;
 mod tableau;
 
+pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 
 pub(crate) use any_step::AnyStep;
 
 use std::array::from_fn;
 
+use nalgebra::Const;
+use num_dual::DualSVec64;
+
 use crate::interrupt::Interrupt;
 use crate::scalar::Lanes;
+use step::Inside;
+use step_control::{NOT_CONVERGED_SHRINK, StepControl, Stiffness};
 
 /// A system of `N` ordinary differential equations.
 pub trait System<S, const N: usize> {
@@ -29,10 +39,39 @@ pub trait StepBounds<const N: usize>: System<f64, N> {
     /// The typical size of each component; a component's tolerance is relative to the larger of its size and this.
     fn magnitudes(&self) -> [f64; N];
 
-    /// The longest step that may start here, in seconds: a step must not jump over something that it cannot see.
+    /// The longest step that may start here, in seconds: a step must not jump over something that it cannot see, and an explicit one must
+    /// not be so long that it is unstable.
     fn longest_step(&self, _time: f64, _state: &[f64; N]) -> f64 {
         f64::INFINITY
     }
+
+    /// The longest implicit step that may start here, in seconds. Where it is much longer than the longest explicit one, and that is
+    /// shorter than accuracy asks for, the system is stiff.
+    fn longest_implicit_step(&self, time: f64, state: &[f64; N]) -> f64 {
+        self.longest_step(time, state)
+    }
+
+    /// How the rates of change depend on the state: row by row ∂fᵢ/∂yⱼ. Implicit steps need it, for their iterations alone: columns by which
+    /// nothing changes fast may be left 0.
+    fn jacobian(&self, _time: f64, _state: &[f64; N]) -> [[f64; N]; N] {
+        [[0.0; N]; N]
+    }
+}
+
+/// The first `K` columns of the Jacobian of a system, in dual numbers; the others are left 0.
+pub fn jacobian<F: System<DualSVec64<K>, N>, const N: usize, const K: usize>(
+    system: &F,
+    time: f64,
+    state: &[f64; N],
+) -> [[f64; N]; N] {
+    let variables = from_fn(|i| {
+        let number = DualSVec64::<K>::from_re(state[i]);
+        if i < K { number.derivative(i) } else { number }
+    });
+    system.derivative(time.into(), &variables).map(|rate| {
+        let slopes = rate.eps.unwrap_generic(Const::<K>, Const::<1>);
+        from_fn(|j| if j < K { slopes[j] } else { 0.0 })
+    })
 }
 
 /// Why the integration cannot go on.
@@ -67,7 +106,7 @@ pub struct Statistics {
     pub steps: usize,
     /// Steps that were tried and missed the tolerance.
     pub rejected_steps: usize,
-    /// Evaluations of the derivative.
+    /// Evaluations of the derivative; a Jacobian counts as one, and one for each of its columns that is not 0.
     pub evaluations: usize,
 }
 
@@ -121,6 +160,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         &self.derivative
     }
 
+    /// Whether the next step is an implicit one, since the system is stiff here.
+    pub fn is_stiff(&self) -> bool {
+        self.control.stiffness.is_found
+    }
+
     /// Takes one step, which ends at `end` at the latest.
     ///
     /// # Errors
@@ -128,10 +172,22 @@ impl<'a, const N: usize> Integrator<'a, N> {
     pub fn advance<F: StepBounds<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
         loop {
             let trial_end = self.control.trial_end(end)?;
-            let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, self.control.length);
-            if self.control.accepts(&self.state, &trial) {
-                let end_derivative = system.derivative(trial_end, &trial.end);
-                return Ok(self.take(system, trial, trial_end, end_derivative));
+            if self.is_stiff() {
+                match self.attempt_implicit(system, self.control.length) {
+                    Some(trial) if self.control.accepts_implicit(&self.state, &trial) => {
+                        return Ok(self.take_implicit(system, &trial, trial_end));
+                    }
+                    Some(_) => {}
+                    None => self.control.reject(NOT_CONVERGED_SHRINK),
+                }
+                self.limit_implicit(system);
+            } else {
+                let Self { control, state, derivative } = self;
+                let trial = step::attempt(system, control.time, state, derivative, control.length);
+                if control.accepts(state, &trial) {
+                    let end_derivative = system.derivative(trial_end, &trial.end);
+                    return Ok(self.take(system, trial, trial_end, end_derivative));
+                }
             }
         }
     }
@@ -139,17 +195,24 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
     pub fn shorten<F: StepBounds<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
-        let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, end - step.start_time);
+        let length = end - step.start_time;
+        if step.is_implicit()
+            && let Some(trial) = self.attempt_implicit(system, length)
+        {
+            return self.take_implicit(system, &trial, end);
+        }
+        let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, length);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
         let end_derivative = system.derivative(end, &trial.end);
         self.take(system, trial, end, end_derivative)
     }
 
-    /// Goes on from the end of a step with a system, or a state, that changes there.
+    /// Goes on from the end of a step with a system, or a state, that changes there. What decays fast there is to be followed first.
     pub fn restart<F: StepBounds<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
         (self.control.time, self.state) = (time, state);
         self.derivative = system.derivative(self.control.time, &self.state);
         self.control.statistics.evaluations += 1;
+        self.control.stiffness = Stiffness::default();
         self.control.shorten(system.longest_step(self.control.time, &self.state));
     }
 
@@ -162,9 +225,49 @@ impl<'a, const N: usize> Integrator<'a, N> {
         end_derivative: [f64; N],
     ) -> Step<N> {
         let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
-        (self.control.time, self.state, self.derivative) = (end_time, step.end, end_derivative);
-        self.control.shorten(system.longest_step(end_time, &self.state));
+        self.go_to_end(&step);
+        let longest = system.longest_step(end_time, &self.state);
+        self.control.limit(longest, || system.longest_implicit_step(end_time, &self.state));
         step
+    }
+
+    /// Tries an implicit step of a length, s.
+    fn attempt_implicit<F: StepBounds<N>>(&mut self, system: &F, length: f64) -> Option<radau::Trial<N>> {
+        let Self { control, state, derivative } = self;
+        let start = radau::Start { time: control.time, state, derivative };
+        let size = |change: &[f64; N]| control.size(change, state, state);
+        let mut evaluations = 0;
+        let trial = radau::attempt(system, &start, length, size, &mut evaluations);
+        control.statistics.evaluations += evaluations;
+        trial
+    }
+
+    /// Goes to the end of an implicit trial step.
+    fn take_implicit<F: StepBounds<N>>(&mut self, system: &F, trial: &radau::Trial<N>, end_time: f64) -> Step<N> {
+        let step = Step {
+            start_time: self.control.time,
+            end_time,
+            start: self.state,
+            end: trial.end,
+            start_derivative: self.derivative,
+            end_derivative: system.derivative(end_time, &trial.end),
+            inside: Inside::Implicit(trial.inside),
+        };
+        self.control.statistics.evaluations += 1;
+        self.go_to_end(&step);
+        self.limit_implicit(system);
+        step
+    }
+
+    /// Keeps the next implicit step within its bounds, or goes back to explicit ones.
+    fn limit_implicit<F: StepBounds<N>>(&mut self, system: &F) {
+        let Self { control, state, .. } = self;
+        let time = control.time;
+        control.limit_implicit(system.longest_step(time, state), || system.longest_implicit_step(time, state));
+    }
+
+    fn go_to_end(&mut self, step: &Step<N>) {
+        (self.control.time, self.state, self.derivative) = (step.end_time, step.end, step.end_derivative);
     }
 }
 
@@ -172,7 +275,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
 ///
 /// Each lane has an integrator, its own system, and its end, s. A lane whose trial meets its tolerance advances by it; the others will
 /// try a shorter one the next time. A lane without an integrator is idle. The steps are those that the integrators would take alone,
-/// to the last digit.
+/// to the last digit; explicit ones: an integrator whose system [is stiff](Integrator::is_stiff) has to take its next step alone.
 ///
 /// # Errors
 /// Lane by lane those of [`Integrator::advance`].
@@ -215,129 +318,3 @@ fn packed<F, const N: usize, const L: usize>(
 ) -> Lanes<L> {
     Lanes(from_fn(|lane| lanes[lane].as_ref().map_or(0.0, |(integrator, ..)| number(integrator))))
 }
-
-/// The control of the length of the steps: each as long as the tolerance allows.
-#[derive(Debug)]
-struct StepControl<'a, const N: usize> {
-    limits: Limits<'a>,
-    magnitudes: [f64; N],
-    /// How many numbers of the state have errors that count: those of a finite magnitude.
-    counted: f64,
-    /// Of the last accepted step's end, s.
-    time: f64,
-    /// Proposed for the next step, s.
-    length: f64,
-    /// Proposed before the end cut the present step short, s; 0 where it does not.
-    stride: f64,
-    /// By how much the next accepted step may lengthen it: not at all after a rejected one.
-    growth: f64,
-    statistics: Statistics,
-}
-
-impl<'a, const N: usize> StepControl<'a, N> {
-    fn new<F: StepBounds<N>>(
-        system: &F,
-        time: f64,
-        state: &[f64; N],
-        derivative: &[f64; N],
-        limits: Limits<'a>,
-    ) -> Self {
-        let magnitudes = system.magnitudes();
-        #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
-        let counted = magnitudes.iter().filter(|magnitude| magnitude.is_finite()).count() as f64;
-        let statistics = Statistics { evaluations: 2, ..Statistics::default() };
-        let mut control =
-            Self { limits, magnitudes, counted, time, length: 0.0, stride: 0.0, growth: GREATEST_GROWTH, statistics };
-        control.length = control.first_step(system, state, derivative);
-        control
-    }
-
-    /// Where the next trial step ends, s.
-    fn trial_end(&mut self, end: f64) -> Result<f64, IntegrationError> {
-        let Limits { steps: limit, interrupt, .. } = self.limits;
-        let time = self.time;
-        if interrupt.is_raised() {
-            return Err(IntegrationError::Interrupted { time });
-        }
-        if self.statistics.steps + self.statistics.rejected_steps >= limit {
-            return Err(IntegrationError::StepLimit { time, limit });
-        }
-        // A remainder below one per cent of a step is taken along.
-        let last = time + self.length * 1.01 >= end;
-        let trial_end = if last { end } else { time + self.length };
-        self.stride = if last { self.length } else { 0.0 };
-        self.length = trial_end - time;
-        if self.length.is_nan() || self.length <= LEAST_LENGTH * end {
-            return Err(IntegrationError::StepTooSmall { time });
-        }
-        Ok(trial_end)
-    }
-
-    /// Keeps the next step within a length.
-    fn shorten(&mut self, longest: f64) {
-        self.length = self.length.min(longest);
-    }
-
-    /// Whether the error of the trial step is small enough; proposes the length of the next one.
-    fn accepts(&mut self, start: &[f64; N], trial: &step::Trial<f64, N>) -> bool {
-        let error = self.error(start, trial);
-        self.statistics.evaluations += step::TRIAL_EVALUATIONS;
-        // The eighth root.
-        let fitting = SAFETY / error.sqrt().sqrt().sqrt();
-        let accepted = error < 1.0;
-        if accepted {
-            self.statistics.evaluations += 1;
-            self.statistics.steps += 1;
-            self.length = (self.length * self.growth.min(fitting).max(LEAST_GROWTH)).max(self.stride);
-            self.growth = GREATEST_GROWTH;
-        } else {
-            self.statistics.rejected_steps += 1;
-            self.length *= if error.is_finite() { fitting.max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK };
-            self.growth = 1.0;
-        }
-        accepted
-    }
-
-    /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
-    fn error(&self, start: &[f64; N], trial: &step::Trial<f64, N>) -> f64 {
-        let [mut fifth, mut third] = [0.0; 2];
-        for (i, magnitude) in self.magnitudes.iter().enumerate() {
-            let size = start[i].abs().max(trial.end[i].abs()).max(*magnitude);
-            let weight = 1.0 / (self.limits.relative_tolerance * size);
-            fifth += (trial.error_fifth[i] * weight).powi(2);
-            third += (trial.error_third[i] * weight).powi(2);
-        }
-        if fifth == 0.0 && third == 0.0 {
-            return f64::MIN_POSITIVE;
-        }
-        let denominator = ((fifth + third * 0.01) * self.counted).sqrt();
-        self.length * fifth / denominator
-    }
-
-    /// The length of the first step, from the sizes of the first and second derivative (Hairer, Nørsett, Wanner, section II.4).
-    fn first_step<F: StepBounds<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
-        let norm = |vector: &[f64; N]| {
-            let size = |i: usize| state[i].abs().max(self.magnitudes[i]);
-            let component = |i: usize| vector[i] / (self.limits.relative_tolerance * size(i));
-            (0..N).map(component).map(|x| x * x).sum::<f64>().sqrt()
-        };
-        let first = norm(slope);
-        let guess = if first > 0.0 { 0.01 * norm(state) / first } else { 1e-6 };
-        let guess = guess.min(system.longest_step(self.time, state));
-        let euler = from_fn(|i| state[i] + slope[i] * guess);
-        let next_slope = system.derivative(self.time + guess, &euler);
-        let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
-        let steepest = first.max(second);
-        let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };
-        // Where the trial overflowed, the guess shrinks until a step is accepted.
-        if refined.is_finite() { refined.min(guess * 100.0) } else { guess }
-    }
-}
-
-const ORDER: f64 = 8.0;
-const SAFETY: f64 = 0.9;
-const LEAST_GROWTH: f64 = 1.0 / 3.0;
-const GREATEST_GROWTH: f64 = 6.0;
-const NOT_FINITE_SHRINK: f64 = 0.1;
-/// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.
-const LEAST_LENGTH: f64 = 1e-18;

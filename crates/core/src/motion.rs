@@ -42,7 +42,7 @@ pub const LIFT_FADE_ANGLE: f64 = 1e-3;
 /// Within this angle of a pole, seen from the planet's centre, the wind fades out, rad: at the pole there is neither east nor north.
 pub const WIND_FADE_ANGLE: f64 = 1e-3;
 
-/// Scale heights that a step may fall; see [`Forces::longest_step`].
+/// Scale heights that a step may fall; see [`Forces::longest_fall`].
 const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
 /// Times of drag that a step may last; see [`Forces::longest_step`].
 const DRAG_TIMES_A_STEP: f64 = 1.5;
@@ -598,16 +598,32 @@ impl Forces {
         [length, (self.models.planet.gravitational_parameter / length).sqrt()]
     }
 
-    /// The longest step that may start in a state, s.
+    /// The longest explicit step that may start in a state, s.
+    ///
+    /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
+    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
+    fn longest_step(&self, time: f64, state: &State<f64>) -> f64 {
+        let flow = self.flow::<false, _>(time, state);
+        let longest = self.longest_fall(time, state, &flow);
+        let air = self.air::<false, _>(time, &flow);
+        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density::<false, _>(&flow));
+        let longest = if drag_time.is_nan() { longest } else { longest.min(DRAG_TIMES_A_STEP * drag_time) };
+        longest.min(self.longest_braking(time, state))
+    }
+
+    /// The longest implicit step that may start in a state, s.
+    fn longest_implicit_step(&self, time: f64, state: &State<f64>) -> f64 {
+        let flow = self.flow::<false, _>(time, state);
+        self.longest_fall(time, state, &flow).min(self.longest_braking(time, state))
+    }
+
+    /// The longest step that does not jump over air, s.
     ///
     /// From space an integrator sees no air, and a long step would jump over the whole atmosphere.
     /// A step ends at the latest when the vehicle, at its present vertical speed and acceleration, has fallen half the way
     /// to the sensible atmosphere and some scale heights more.
-    /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
-    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
-    fn longest_step(&self, time: f64, state: &State<f64>) -> f64 {
+    fn longest_fall(&self, time: f64, state: &State<f64>, flow: &Flow<f64>) -> f64 {
         let State { position, velocity, .. } = state;
-        let flow = self.flow::<false, _>(time, state);
         let radius = length(position);
         let to_air = (flow.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
         let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
@@ -618,12 +634,7 @@ impl Forces {
         let fall = (self.models.planet.point_gravity(radius) - level_squared / radius + thrust).max(0.0);
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
-        let through_air = if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) };
-
-        let air = self.air::<false, _>(time, &flow);
-        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density::<false, _>(&flow));
-        let longest = if drag_time.is_nan() { through_air } else { through_air.min(DRAG_TIMES_A_STEP * drag_time) };
-        longest.min(self.longest_braking(time, state))
+        if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) }
     }
 
     /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.

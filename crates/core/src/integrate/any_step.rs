@@ -50,6 +50,15 @@ impl AnyStep {
         }
     }
 
+    /// Whether it is an implicit step.
+    pub(crate) fn is_implicit(&self) -> bool {
+        match self {
+            Self::Six(step) => step.is_implicit(),
+            Self::Seven(step) => step.is_implicit(),
+            Self::Eight(step) => step.is_implicit(),
+        }
+    }
+
     /// The instant at a part of the step, s.
     pub(crate) fn time(&self, part: f64) -> f64 {
         match self {

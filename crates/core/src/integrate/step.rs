@@ -1,7 +1,7 @@
-//! One step of the method, and the state inside it.
+//! One step of a method, and the state inside it.
 
-use super::System;
 use super::tableau::{self, Row};
+use super::{System, radau};
 use crate::scalar::{Lanes, Scalar};
 
 /// Evaluations of the derivative for a trial step.
@@ -29,10 +29,19 @@ pub struct Step<const N: usize> {
     pub start_derivative: [f64; N],
     /// The rate of change at the end.
     pub end_derivative: [f64; N],
-    slopes: [[f64; N]; KEPT],
+    pub(super) inside: Inside<N>,
 }
 
-/// The state at every instant inside a step, to order 7.
+/// What a step keeps for the state inside it.
+#[derive(Clone, Debug)]
+pub(super) enum Inside<const N: usize> {
+    /// Slopes of stages of DOP853.
+    Explicit([[f64; N]; KEPT]),
+    /// The way to the first two stages of Radau IIA.
+    Implicit([[f64; N]; 2]),
+}
+
+/// The state at every instant inside a step: to order 7, and to order 3 where the step is implicit.
 #[derive(Clone, Debug)]
 pub struct Interpolant<const N: usize> {
     start_time: f64,
@@ -97,7 +106,7 @@ impl<const N: usize> Trial<f64, N> {
             end: self.end,
             start_derivative: self.slopes[0],
             end_derivative,
-            slopes: std::array::from_fn(|i| self.slopes[FIRST_KEPT + i]),
+            inside: Inside::Explicit(std::array::from_fn(|i| self.slopes[FIRST_KEPT + i])),
         }
     }
 }
@@ -132,29 +141,64 @@ impl<const N: usize> Step<N> {
         self.end = std::array::from_fn(|i| self.end[i] + self.end_derivative[i] * time);
     }
 
-    /// The state inside, which takes [`Interpolant::EVALUATIONS`] of the derivative.
+    /// Whether it is a step of an implicit method, as they are taken where the system is stiff.
+    pub fn is_implicit(&self) -> bool {
+        matches!(self.inside, Inside::Implicit(_))
+    }
+
+    /// The state inside, which takes [`Interpolant::EVALUATIONS`] of the derivative, and none where the step is implicit.
     pub fn interpolant<F: System<f64, N>>(&self, system: &F) -> Interpolant<N> {
         let Self { start, end, start_derivative, end_derivative, .. } = *self;
         let length = self.length();
+        let increment: [f64; N] = std::array::from_fn(|i| end[i] - start[i]);
+        let bend: [f64; N] = std::array::from_fn(|i| start_derivative[i] * length - increment[i]);
+        let twist: [f64; N] =
+            std::array::from_fn(|i| increment[i] * 2.0 - (start_derivative[i] + end_derivative[i]) * length);
+        let [f4, f5, f6, f7] = match &self.inside {
+            Inside::Explicit(slopes) => self.explicit_rest(system, slopes),
+            Inside::Implicit(stages) => {
+                // What the cubic of the ends leaves of the two stages is θ² (1-θ)² (F₄ + θ F₅) there.
+                let left = |stage: usize, i: usize| {
+                    let (part, rest) = (radau::NODES[stage], 1.0 - radau::NODES[stage]);
+                    let cubic = part * (increment[i] + rest * (bend[i] + part * twist[i]));
+                    (stages[stage][i] - cubic) / (part * rest).powi(2)
+                };
+                let [c1, c2, _] = radau::NODES;
+                let f5: [f64; N] = std::array::from_fn(|i| (left(1, i) - left(0, i)) / (c2 - c1));
+                let f4 = std::array::from_fn(|i| left(0, i) - f5[i] * c1);
+                [f4, f5, [0.0; N], [0.0; N]]
+            }
+        };
+        Interpolant {
+            start_time: self.start_time,
+            length,
+            start,
+            coefficients: [increment, bend, twist, f4, f5, f6, f7],
+        }
+    }
+
+    /// The last four of the coefficients, from the slopes that an explicit step keeps and three more.
+    fn explicit_rest<F: System<f64, N>>(&self, system: &F, kept: &[[f64; N]; KEPT]) -> [[f64; N]; 4] {
+        let length = self.length();
         let mut slopes = [[0.0; N]; ALL_STAGES];
-        slopes[0] = start_derivative;
-        slopes[FIRST_KEPT..STAGES].copy_from_slice(&self.slopes);
-        slopes[STAGES] = end_derivative;
+        slopes[0] = self.start_derivative;
+        slopes[FIRST_KEPT..STAGES].copy_from_slice(kept);
+        slopes[STAGES] = self.end_derivative;
         for (stage, (row, node)) in (STAGES + 1..).zip(tableau::DENSE_STAGES.into_iter().zip(tableau::DENSE_NODES)) {
             let time = later(self.start_time, length, node);
-            slopes[stage] = system.derivative(time, &advanced(&start, &sum(&slopes, row), length));
+            slopes[stage] = system.derivative(time, &advanced(&self.start, &sum(&slopes, row), length));
         }
-        let increment: [f64; N] = std::array::from_fn(|i| end[i] - start[i]);
-        let bend = std::array::from_fn(|i| start_derivative[i] * length - increment[i]);
-        let twist = std::array::from_fn(|i| increment[i] * 2.0 - (start_derivative[i] + end_derivative[i]) * length);
-        let [f4, f5, f6, f7] = tableau::DENSE.map(|row| sum(&slopes, row).map(|component| component * length));
-        let coefficients = [increment, bend, twist, f4, f5, f6, f7];
-        Interpolant { start_time: self.start_time, length, start, coefficients }
+        tableau::DENSE.map(|row| sum(&slopes, row).map(|component| component * length))
+    }
+
+    /// What the state inside costs: evaluations of the derivative.
+    pub fn interpolant_evaluations(&self) -> usize {
+        if self.is_implicit() { 0 } else { Interpolant::<N>::EVALUATIONS }
     }
 }
 
 impl<const N: usize> Interpolant<N> {
-    /// What it costs to make one: evaluations of the derivative.
+    /// What it costs to make one of an explicit step: evaluations of the derivative.
     pub const EVALUATIONS: usize = tableau::DENSE_STAGES.len();
 
     /// The state at the given part of the step, 0 at its start and 1 at its end.
@@ -175,7 +219,7 @@ impl<const N: usize> Interpolant<N> {
     }
 }
 
-/// The state at the end of a step that was taken before, from a time over a length, s, from another start: the numbers may carry
+/// The state at the end of an explicit step that was taken before, from a time over a length, s, from another start: the numbers may carry
 /// derivatives, which then are those of the end by what varies at the start and in the system. The step is not chosen anew, so that
 /// its choice adds nothing.
 pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(

@@ -1,9 +1,11 @@
 //! The Cartesian formulation: planet-fixed position and velocity. It has no singularity but the planet's centre.
 
+use num_dual::DualSVec64;
+
 use super::state::coordinates;
 use super::{Forces, Formulation, Singularity, State};
 use crate::coordinates::PlanetFixed;
-use crate::integrate::{StepBounds, System};
+use crate::integrate::{StepBounds, System, jacobian};
 use crate::scalar::{Over, Scalar};
 
 /// The state (x, y, z, vx, vy, vz), in m and m/s, and maybe heat load and mass.
@@ -49,7 +51,7 @@ impl<P: Scalar> Cartesian<P> {
 
 impl<const N: usize> StepBounds<N> for Cartesian
 where
-    Self: System<f64, N>,
+    Self: System<f64, N> + System<DualSVec64<6>, N>,
 {
     fn magnitudes(&self) -> [f64; N] {
         let [length, speed] = self.0.units();
@@ -59,11 +61,20 @@ where
     fn longest_step(&self, time: f64, numbers: &[f64; N]) -> f64 {
         self.0.longest_step(time, &Self::state(numbers))
     }
+
+    fn longest_implicit_step(&self, time: f64, numbers: &[f64; N]) -> f64 {
+        self.0.longest_implicit_step(time, &Self::state(numbers))
+    }
+
+    fn jacobian(&self, time: f64, numbers: &[f64; N]) -> [[f64; N]; N] {
+        // Nothing changes fast by heat load and mass.
+        jacobian::<_, N, 6>(self, time, numbers)
+    }
 }
 
 impl<const N: usize> Formulation<N> for Cartesian
 where
-    Self: System<f64, N>,
+    Self: System<f64, N> + System<DualSVec64<6>, N>,
 {
     fn numbers<S: Scalar>(state: &State<S>) -> [S; N] {
         state.numbers(state.planet_fixed().into())

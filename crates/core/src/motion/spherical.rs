@@ -1,12 +1,13 @@
 //! The spherical formulation of the thesis. It is singular at the poles, in vertical flight and at rest.
 
 use nalgebra::Vector3;
+use num_dual::DualSVec64;
 
 use super::directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
 use super::state::coordinates;
 use super::{Forces, Formulation, Singularity, State};
 use crate::coordinates::FlightPath;
-use crate::integrate::{StepBounds, System};
+use crate::integrate::{StepBounds, System, jacobian};
 use crate::planet::Pull;
 use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar};
@@ -221,7 +222,7 @@ impl<P: Scalar> Spherical<P> {
 
 impl<const N: usize> StepBounds<N> for Spherical
 where
-    Self: System<f64, N>,
+    Self: System<f64, N> + System<DualSVec64<6>, N>,
 {
     fn magnitudes(&self) -> [f64; N] {
         let [length, speed] = self.0.units();
@@ -231,11 +232,20 @@ where
     fn longest_step(&self, time: f64, numbers: &[f64; N]) -> f64 {
         self.0.longest_step(time, &Self::state(numbers))
     }
+
+    fn longest_implicit_step(&self, time: f64, numbers: &[f64; N]) -> f64 {
+        self.0.longest_implicit_step(time, &Self::state(numbers))
+    }
+
+    fn jacobian(&self, time: f64, numbers: &[f64; N]) -> [[f64; N]; N] {
+        // Nothing changes fast by heat load and mass.
+        jacobian::<_, N, 6>(self, time, numbers)
+    }
 }
 
 impl<const N: usize> Formulation<N> for Spherical
 where
-    Self: System<f64, N>,
+    Self: System<f64, N> + System<DualSVec64<6>, N>,
 {
     fn numbers<S: Scalar>(state: &State<S>) -> [S; N] {
         state.numbers(FlightPath::from_planet_fixed(&state.planet_fixed()).into())

@@ -19,7 +19,7 @@ pub(crate) trait FormulationIn<P: Scalar, const N: usize>: Formulation<N> {
 
 impl<P: Scalar, const N: usize> FormulationIn<P, N> for Cartesian
 where
-    Self: System<f64, N>,
+    Self: Formulation<N>,
     Cartesian<P>: System<P, N>,
 {
     type Motion = Cartesian<P>;
@@ -35,7 +35,7 @@ where
 
 impl<P: Scalar, const N: usize> FormulationIn<P, N> for Spherical
 where
-    Self: System<f64, N>,
+    Self: Formulation<N>,
     Spherical<P>: System<P, N>,
 {
     type Motion = Spherical<P>;

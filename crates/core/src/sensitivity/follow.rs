@@ -13,7 +13,7 @@ use super::variation::{Dual, VariedCase};
 use super::varied_forces::{VariedForces, VariedMotion};
 use crate::coordinates::GreatCircle;
 use crate::event::{Condition, Quantity, Trigger};
-use crate::integrate::{AnyStep, Step, System, follow};
+use crate::integrate::{AnyStep, Step, System, follow, follow_implicitly};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Forces, MASS, ModelMode, State, StateRate, moving};
 use crate::scalar::{Scalar, length};
@@ -155,26 +155,38 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let (time, length) = (step.start_time(), step.end_time() - step.start_time());
         let start = (self.state, self.ground_distance);
         for place in self.of.places {
-            if let Place::Inside { step, time: inside } = *place
-                && step == index
+            if let Place::Inside { step: wanted, time: inside } = *place
+                && wanted == index
             {
-                self.advance(time, inside - time);
+                self.advance(&step.step, inside - time);
                 self.keep(*place, Dual::from(inside));
                 (self.state, self.ground_distance) = start;
             }
         }
-        self.advance(time, length);
+        self.advance(&step.step, length);
     }
 
-    fn advance(&mut self, time: f64, length: f64) {
-        let end = follow(&self.motion, &self.state, time, length);
+    /// Follows the beginning of a step over a length, s.
+    fn advance(&mut self, step: &AnyStep, length: f64) {
+        let end = self.followed(step, length);
         if self.of.with_ground_distance {
-            let inside = INSIDE.map(|node| follow(&self.motion, &self.state, time, length * node));
+            let inside = INSIDE.map(|node| self.followed(step, length * node));
             let ends = self.ground_speed(&self.state) + self.ground_speed(&end);
             let middle = self.ground_speed(&inside[0]) + self.ground_speed(&inside[1]);
             self.ground_distance += (ends + middle * 5.0) * (length / 12.0);
         }
         self.state = end;
+    }
+
+    /// The state a length, s, after the start of a step, which is the present one.
+    fn followed(&self, step: &AnyStep, length: f64) -> [Dual<W>; N] {
+        let time = step.start_time();
+        if step.is_implicit() {
+            let jacobian = self.motion.jacobian(time, &self.state.map(|number| number.re));
+            follow_implicitly(&self.motion, &jacobian, &self.state, time, length)
+        } else {
+            follow(&self.motion, &self.state, time, length)
+        }
     }
 
     /// The rate of the ground distance, m/s.

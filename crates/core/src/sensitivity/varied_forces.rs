@@ -88,6 +88,13 @@ pub(super) struct VariedMotion<F: FormulationIn<Dual<W>, N>, const N: usize, con
     nodes: Vec<ModelNode<F>>,
 }
 
+impl<F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> VariedMotion<F, N, W> {
+    /// How the rates depend on the state.
+    pub(super) fn jacobian(&self, time: f64, state: &[f64; N]) -> [[f64; N]; N] {
+        self.plain.jacobian(time, state)
+    }
+}
+
 impl<F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> System<Dual<W>, N> for VariedMotion<F, N, W> {
     fn derivative(&self, time: Dual<W>, state: &[Dual<W>; N]) -> [Dual<W>; N] {
         let mut rates = self.dual.derivative(time, state);

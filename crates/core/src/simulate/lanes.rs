@@ -18,7 +18,8 @@ type End = Result<Arrival, SimulationError>;
 ///
 /// Every flight has steps of its own, and its lane takes the next one when it has ended. Neighbours share the lanes
 /// if their models and their formulations are the same. Where the formulas of models change on the way, a flight is flown alone,
-/// since every lane would need its own; so are heated flights, and those on which something is watched.
+/// since every lane would need its own; so are heated flights, and those on which something is watched. Where a flight is stiff, it leaves
+/// its lane for as long.
 pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<End> {
     let shared = |scenario: &Scenario| {
         let case = scenario.case();
@@ -82,6 +83,7 @@ fn fly_in_lanes<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
                 Ok(step) => flight.pass(&step, &mut |_| Ok(())).transpose(),
                 Err(error) => Some(Err(flight.failure(error))),
             };
+            let end = end.or_else(|| fly_while_stiff(flight));
             if let Some(end) = end {
                 ends[*index] = end;
                 *lane = next(&mut ends);
@@ -90,6 +92,17 @@ fn fly_in_lanes<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
         }
     }
     ends
+}
+
+/// Flies alone, out of the lanes, as long as steps are implicit; returns the end of the flight, if it came to that.
+fn fly_while_stiff<F: Formulation<6>>(flight: &mut Flight<F, 6>) -> Option<End> {
+    while flight.integrator.is_stiff() {
+        let end = flight.advance().and_then(|step| flight.pass(&step, &mut |_| Ok(()))).transpose();
+        if end.is_some() {
+            return end;
+        }
+    }
+    None
 }
 
 /// The forces on the vehicles of these cases, whose models are the same.

@@ -99,6 +99,6 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
 
     /// What looking inside has cost: evaluations of the derivative for the interpolation.
     pub(super) fn evaluations(&self) -> usize {
-        if self.interpolant.get().is_some() { Interpolant::<N>::EVALUATIONS } else { 0 }
+        if self.interpolant.get().is_some() { self.step.interpolant_evaluations() } else { 0 }
     }
 }

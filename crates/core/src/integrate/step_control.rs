@@ -1,0 +1,218 @@
+//! How long the steps are, and of which method.
+
+use std::array::from_fn;
+
+use super::{IntegrationError, Limits, Statistics, StepBounds, radau, step};
+
+/// The control of the length of the steps: each as long as the tolerance allows.
+#[derive(Debug)]
+pub(super) struct StepControl<'a, const N: usize> {
+    limits: Limits<'a>,
+    magnitudes: [f64; N],
+    /// How many numbers of the state have errors that count: those of a finite magnitude.
+    counted: f64,
+    /// Of the last accepted step's end, s.
+    pub(super) time: f64,
+    /// Proposed for the next step, s.
+    pub(super) length: f64,
+    /// Proposed before the end cut the present step short, s; 0 where it does not.
+    stride: f64,
+    /// By how much the next accepted step may lengthen it: not at all after a rejected one.
+    growth: f64,
+    pub(super) stiffness: Stiffness,
+    pub(super) statistics: Statistics,
+}
+
+/// What the explicit steps tell of stiffness.
+#[derive(Debug)]
+pub(super) struct Stiffness {
+    /// Whether implicit steps are taken.
+    pub(super) is_found: bool,
+    /// Explicit steps, one after the other, for which accuracy would have had the longest one, or nearly so.
+    restrained: usize,
+    /// So many of them make the system stiff; more after implicit steps that did not pay.
+    patience: usize,
+}
+
+impl Default for Stiffness {
+    fn default() -> Self {
+        Self { is_found: false, restrained: 0, patience: PATIENCE }
+    }
+}
+
+impl<'a, const N: usize> StepControl<'a, N> {
+    pub(super) fn new<F: StepBounds<N>>(
+        system: &F,
+        time: f64,
+        state: &[f64; N],
+        derivative: &[f64; N],
+        limits: Limits<'a>,
+    ) -> Self {
+        let magnitudes = system.magnitudes();
+        #[expect(clippy::cast_precision_loss, reason = "N is a handful")]
+        let counted = magnitudes.iter().filter(|magnitude| magnitude.is_finite()).count() as f64;
+        let statistics = Statistics { evaluations: 2, ..Statistics::default() };
+        let mut control = Self {
+            limits,
+            magnitudes,
+            counted,
+            time,
+            length: 0.0,
+            stride: 0.0,
+            growth: GREATEST_GROWTH,
+            stiffness: Stiffness::default(),
+            statistics,
+        };
+        control.length = control.first_step(system, state, derivative);
+        control
+    }
+
+    /// Where the next trial step ends, s.
+    pub(super) fn trial_end(&mut self, end: f64) -> Result<f64, IntegrationError> {
+        let Limits { steps: limit, interrupt, .. } = self.limits;
+        let time = self.time;
+        if interrupt.is_raised() {
+            return Err(IntegrationError::Interrupted { time });
+        }
+        if self.statistics.steps + self.statistics.rejected_steps >= limit {
+            return Err(IntegrationError::StepLimit { time, limit });
+        }
+        // A remainder below one per cent of a step is taken along.
+        let last = time + self.length * 1.01 >= end;
+        let trial_end = if last { end } else { time + self.length };
+        self.stride = if last { self.length } else { 0.0 };
+        self.length = trial_end - time;
+        if self.length.is_nan() || self.length <= LEAST_LENGTH * end {
+            return Err(IntegrationError::StepTooSmall { time });
+        }
+        Ok(trial_end)
+    }
+
+    /// Keeps the next step within a length.
+    pub(super) fn shorten(&mut self, longest: f64) {
+        self.length = self.length.min(longest);
+    }
+
+    /// Keeps the next step within the longest explicit one. Where it is not accuracy that has long held the steps back, it is an implicit one, if that
+    /// may be much longer.
+    pub(super) fn limit(&mut self, longest: f64, longest_implicit: impl FnOnce() -> f64) {
+        let Stiffness { is_found, restrained, patience } = &mut self.stiffness;
+        *restrained = if self.length > NEARLY * longest { *restrained + 1 } else { 0 };
+        self.length = self.length.min(longest);
+        if *restrained >= *patience {
+            *restrained = 0;
+            *is_found = longest_implicit() > ADVANTAGE * longest;
+            self.length *= if *is_found { ADVANTAGE } else { 1.0 };
+        }
+    }
+
+    /// Keeps the next implicit step within the longest one. Where it would hardly be longer than an explicit one, it is that.
+    pub(super) fn limit_implicit(&mut self, longest_explicit: f64, longest: impl FnOnce() -> f64) {
+        if self.length < LEAST_ADVANTAGE * longest_explicit {
+            let patience = self.stiffness.patience * 2;
+            self.stiffness = Stiffness { patience, ..Stiffness::default() };
+            self.length = self.length.min(longest_explicit);
+        } else {
+            self.length = self.length.min(longest());
+        }
+    }
+
+    /// Whether the error of the trial step is small enough; proposes the length of the next one.
+    pub(super) fn accepts(&mut self, start: &[f64; N], trial: &step::Trial<f64, N>) -> bool {
+        let error = self.error(start, trial);
+        self.statistics.evaluations += step::TRIAL_EVALUATIONS;
+        // The eighth root.
+        let accepted = self.decide(error, SAFETY / error.sqrt().sqrt().sqrt());
+        self.statistics.evaluations += usize::from(accepted);
+        accepted
+    }
+
+    /// Whether the error of the implicit trial step is small enough; proposes the length of the next one.
+    pub(super) fn accepts_implicit(&mut self, start: &[f64; N], trial: &radau::Trial<N>) -> bool {
+        let error = self.size(&trial.error, start, &trial.end);
+        self.decide(error, SAFETY / error.sqrt().sqrt())
+    }
+
+    /// Whether an error, as a multiple of the tolerance, is small enough; `fitting`: how many times as long a step would have the tolerance as
+    /// its error.
+    fn decide(&mut self, error: f64, fitting: f64) -> bool {
+        let accepted = error < 1.0;
+        if accepted {
+            self.statistics.steps += 1;
+            self.length = (self.length * self.growth.min(fitting).max(LEAST_GROWTH)).max(self.stride);
+            self.growth = GREATEST_GROWTH;
+        } else {
+            self.reject(if error.is_finite() { fitting.max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK });
+        }
+        accepted
+    }
+
+    /// Makes the next trial shorter.
+    pub(super) fn reject(&mut self, shrink: f64) {
+        self.statistics.rejected_steps += 1;
+        self.length *= shrink;
+        self.growth = 1.0;
+    }
+
+    /// The size of a change of the state in a step, as a multiple of the tolerance.
+    pub(super) fn size(&self, change: &[f64; N], start: &[f64; N], end: &[f64; N]) -> f64 {
+        let part = |i: usize| change[i] / (self.limits.relative_tolerance * self.size_of(i, start, end));
+        ((0..N).map(|i| part(i).powi(2)).sum::<f64>() / self.counted).sqrt()
+    }
+
+    /// The size of a number of the state, to which its error is relative.
+    fn size_of(&self, i: usize, start: &[f64; N], end: &[f64; N]) -> f64 {
+        start[i].abs().max(end[i].abs()).max(self.magnitudes[i])
+    }
+
+    /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
+    fn error(&self, start: &[f64; N], trial: &step::Trial<f64, N>) -> f64 {
+        let [mut fifth, mut third] = [0.0; 2];
+        for i in 0..N {
+            let weight = 1.0 / (self.limits.relative_tolerance * self.size_of(i, start, &trial.end));
+            fifth += (trial.error_fifth[i] * weight).powi(2);
+            third += (trial.error_third[i] * weight).powi(2);
+        }
+        if fifth == 0.0 && third == 0.0 {
+            return f64::MIN_POSITIVE;
+        }
+        let denominator = ((fifth + third * 0.01) * self.counted).sqrt();
+        self.length * fifth / denominator
+    }
+
+    /// The length of the first step, from the sizes of the first and second derivative (Hairer, Nørsett, Wanner, section II.4).
+    fn first_step<F: StepBounds<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
+        let norm = |vector: &[f64; N]| {
+            let size = |i: usize| state[i].abs().max(self.magnitudes[i]);
+            let component = |i: usize| vector[i] / (self.limits.relative_tolerance * size(i));
+            (0..N).map(component).map(|x| x * x).sum::<f64>().sqrt()
+        };
+        let first = norm(slope);
+        let guess = if first > 0.0 { 0.01 * norm(state) / first } else { 1e-6 };
+        let guess = guess.min(system.longest_step(self.time, state));
+        let euler = from_fn(|i| state[i] + slope[i] * guess);
+        let next_slope = system.derivative(self.time + guess, &euler);
+        let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
+        let steepest = first.max(second);
+        let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };
+        // Where the trial overflowed, the guess shrinks until a step is accepted.
+        if refined.is_finite() { refined.min(guess * 100.0) } else { guess }
+    }
+}
+
+const ORDER: f64 = 8.0;
+const SAFETY: f64 = 0.9;
+const LEAST_GROWTH: f64 = 1.0 / 3.0;
+const GREATEST_GROWTH: f64 = 6.0;
+const NOT_FINITE_SHRINK: f64 = 0.1;
+pub(super) const NOT_CONVERGED_SHRINK: f64 = 0.3;
+/// How many times as long as a stable explicit step another has to be to count as much longer: an implicit one costs as much as one and a half.
+const ADVANTAGE: f64 = 3.0;
+/// Implicit steps go on as long as they are so many times as long as explicit ones.
+const LEAST_ADVANTAGE: f64 = 2.0;
+/// Accuracy that asks for steps of this part of the longest one does so for the sake of stability: there the estimate of the error grows.
+const NEARLY: f64 = 0.75;
+/// Explicit steps that are restrained before implicit ones are tried: what decays fast is to be gone by then.
+const PATIENCE: usize = 4;
+/// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.
+const LEAST_LENGTH: f64 = 1e-18;
