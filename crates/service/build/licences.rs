@@ -194,7 +194,7 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
                     open.push(path);
                 }
             } else if NAMES.iter().any(|begin| name.starts_with(begin))
-                && !name.ends_with(".rs")
+                && path.extension().is_none_or(|end| end != "rs")
                 && !path.ends_with(NOT_CHOSEN)
             {
                 found.push(path);
