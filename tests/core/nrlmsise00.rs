@@ -49,12 +49,13 @@ fn density_and_temperature_are_those_of_the_c_translation() {
     let mut count = 0;
     for row in rows {
         let numbers: Vec<f64> = row.split(',').map(|number| number.parse().unwrap()).collect();
-        let [day, second, altitude, latitude, longitude, f107, f107_average, ap, density, temperature] = numbers[..]
+        let [_, second, altitude, latitude, longitude, f107, f107_average, ap, density, temperature] = numbers[..]
         else {
             panic!("{row}")
         };
         let space_weather = SpaceWeather { f107, f107_average, ap: Ap::Daily(ap) };
-        let model = Nrlmsise00::new(day as u16, second, space_weather);
+        let day_of_year = row.split(',').next().unwrap().parse().unwrap();
+        let model = Nrlmsise00::new(day_of_year, second, space_weather);
         let found = air(&model, 0.0, &position(altitude * 1e3, latitude, longitude));
         let tolerance = if latitude.abs() < 90.0 { 1e-9 } else { 1e-7 };
         relative(row, found[0], density, tolerance);

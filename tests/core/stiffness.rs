@@ -251,8 +251,8 @@ fn a_fall_against_linear_drag_ends_where_it_must_at_a_tenth_of_the_cost() {
         for (steps, is_any_implicit) in [(&with, true), (&without, false)] {
             assert_eq!(steps.iter().any(Step::is_implicit), is_any_implicit);
             let end = steps.last().unwrap().end;
-            for i in 0..2 {
-                near("the end", end[i], fall.exact(100.0)[i], 100.0 * tolerance);
+            for (found, exact) in end.iter().zip(fall.exact(100.0)) {
+                near("the end", *found, exact, 100.0 * tolerance);
             }
         }
         assert!(costs.evaluations * 10 < explicit_costs.evaluations, "{costs:?} of {explicit_costs:?}");

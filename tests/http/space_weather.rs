@@ -1,5 +1,7 @@
 //! Files of space-weather indices, and cases that take numbers or those of a file.
 
+use std::fmt::Write as _;
+
 use reentry::atmosphere::nrlmsise00::{Ap, SpaceWeather};
 use reentry_service::wire::epoch::{Epoch, day_of};
 use reentry_service::wire::space_weather::Records;
@@ -16,7 +18,7 @@ fn epoch(text: &str) -> Epoch {
 /// Numbers of a day that no other has: F10.7, and ap of every three hours.
 fn numbers(day: i64) -> (f64, [u32; 8]) {
     let day = u32::try_from(day).unwrap();
-    (f64::from(900 + day % 700) / 10.0, std::array::from_fn(|interval| day % 37 * 8 + interval as u32))
+    (f64::from(900 + day % 700) / 10.0, [0, 1, 2, 3, 4, 5, 6, 7].map(|interval| day % 37 * 8 + interval))
 }
 
 /// 100 days from 2026 January 1, in the three forms.
@@ -34,18 +36,24 @@ fn files() -> [String; 3] {
         let mean = ap.iter().sum::<u32>() / 8;
         let adjusted = flux + 33.0;
         let list = |write: &dyn Fn(u32) -> String| ap.map(write).concat();
-        files[0] += &format!(
-            "{year}-{month}-{date},2626,4,20,27,13,13,20,17,20,23,153,{}{mean},0.4,2,58,{flux:.1},{adjusted:.1},OBS,141.7,144.2,139.2,139.9\n",
+        writeln!(
+            files[0],
+            "{year}-{month}-{date},2626,4,20,27,13,13,20,17,20,23,153,{}{mean},0.4,2,58,{flux:.1},{adjusted:.1},OBS,141.7,144.2,139.2,139.9",
             list(&|ap| format!("{ap},"))
-        );
-        files[1] += &format!(
-            "{year} {month} {date} 2626  4 20 27 13 13 20 17 20 23 153{}{mean:4} 0.4 2  58{adjusted:6.1} 0 139.2 139.9{flux:6.1} 141.7 144.2\n",
+        )
+        .unwrap();
+        writeln!(
+            files[1],
+            "{year} {month} {date} 2626  4 20 27 13 13 20 17 20 23 153{}{mean:4} 0.4 2  58{adjusted:6.1} 0 139.2 139.9{flux:6.1} 141.7 144.2",
             list(&|ap| format!("{ap:4}"))
-        );
-        files[2] += &format!(
-            "{year} {month} {date} 34333 34333.5 2626  4  2.000  2.667  1.333  1.333  2.000  1.667  2.000  2.333{} {mean:5}  58 {flux:8.1} {adjusted:8.1} 1\n",
+        )
+        .unwrap();
+        writeln!(
+            files[2],
+            "{year} {month} {date} 34333 34333.5 2626  4  2.000  2.667  1.333  1.333  2.000  1.667  2.000  2.333{} {mean:5}  58 {flux:8.1} {adjusted:8.1} 1",
             list(&|ap| format!(" {ap:4}"))
-        );
+        )
+        .unwrap();
     }
     files[1] += "END OBSERVED\n\nBEGIN MONTHLY_PREDICTED\n2030 01 01 2700  1  0  0  0  0  0  0  0  0   0   0   0   0   0   0   0   0   0   0 0.0 0  50 100.0 0 100.0 100.0 100.0 100.0 100.0\nEND MONTHLY_PREDICTED\n";
     files
@@ -133,7 +141,7 @@ async fn the_answer_says_which_indices_were_taken() {
     assert_eq!(stormy["models"]["space_weather"]["ap_history"], json!([20.0, 30.0, 40.0, 50.0, 60.0, 15.0, 10.0]));
     // A storm heats the upper air.
     let density = |answer: &serde_json::Value| answer["initial_state"]["density"].as_f64().unwrap();
-    assert!(density(&stormy) != density(&answer));
+    assert!((density(&stormy) / density(&answer) - 1.0).abs() > 1e-3);
 }
 
 /// Derivatives by an index come from differences of flights, and those by the state go through the model: both are the slopes of answers.
