@@ -384,3 +384,23 @@ async fn they_are_beside_a_theory_and_not_in_csv() {
         (422, vec!["/sensitivities".into(), "/dispersions".into()])
     );
 }
+
+/// A vehicle at rest on the ground ends where it starts, at an altitude that stands still: there is no slope, and no fault.
+#[tokio::test]
+async fn a_flight_that_ends_at_rest_has_no_slopes_by_its_end() {
+    let case = json!({
+        "angle_unit": "deg",
+        "atmosphere": {"type": "us76"},
+        "vehicle": {"mass": 1, "aerodynamics": {"type": "ballistic", "ballistic_coefficient": 1e5}},
+        "initial_state": {"type": "planet_relative", "altitude": 0, "longitude": 0, "geocentric_latitude": 0, "speed": 0,
+            "flight_path_angle": 0, "azimuth": 0},
+        "output": {"trajectory": false},
+        "sensitivities": {"of": [{"quantity": "speed"}, {"quantity": "longitude"}], "to": ["/vehicle/mass", "/initial_state/altitude"]},
+    });
+    let answer = fly(&case).await;
+    let rows = [json!(["speed", 0.0]), json!(["longitude", 0.0])];
+    let of = answer["sensitivities"]["of"].as_array().unwrap();
+    assert_eq!([0, 1].map(|row| json!([of[row]["quantity"], of[row]["value"]])), rows);
+    assert_eq!(answer["sensitivities"]["matrix"][0], json!([null, null]));
+    assert_eq!(fly(&with(&case, "/sensitivities", true)).await["sensitivities"]["speed"]["speed"], json!(null));
+}

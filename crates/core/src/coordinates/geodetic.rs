@@ -99,7 +99,7 @@ fn nearest_point((a, b): (f64, f64), (x, y): (f64, f64)) -> (f64, f64, f64) {
         ((p - 1.0) * (p + 1.0) + q * q, -2.0 * (p * p / (t + (ratio - 1.0)) + q * q / t))
     };
     let [mut least, greatest] = [v, (ratio * u).hypot(v)];
-    let mut t = u.hypot(v).clamp(least, greatest);
+    let mut t = u.hypot(v).max(least).min(greatest);
     // A convex, falling function: Newton's method from the left never passes the root, and from the right jumps to its left once.
     for _ in 0..100 {
         let (value, slope) = excess(t);

@@ -438,7 +438,10 @@ fn value_of(trigger: &Trigger) -> f64 {
     }
 }
 
-/// How much later a quantity passes the value that it has: a step of Newton's method, -q/q̇, of value zero.
+/// How much later a quantity passes the value that it has: a step of Newton's method, -q/q̇, of value zero. Where the quantity stands still, as that
+/// of a vehicle at rest, the slopes are no numbers.
 fn delay<const W: usize>(quantity: Dual<W>, rate: f64) -> Dual<W> {
-    -(quantity - quantity.re) * rate.recip()
+    let mut delay = -(quantity - quantity.re) * rate.recip();
+    delay.re = 0.0;
+    delay
 }

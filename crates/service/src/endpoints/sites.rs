@@ -48,7 +48,7 @@ const COLUMNS: [&str; 10] = [
     responses((status = 200, description = "The sites.", content(
         (Sites = "application/json"),
         (String = "text/csv"),
-        (String = "application/geo+json"),
+        (Object = "application/geo+json"),
     ))),
 )]
 pub async fn sites(parts: Parts) -> Result<Response, ApiError> {

@@ -167,7 +167,7 @@ fn at_site(object: &mut Object) -> Option<FlightOutput> {
         .doc("Site on the planet's surface: its slug in `GET /sites`, or its longitude and latitude.")
         .text_or(
             &SITE,
-            slug_schema,
+            ("SiteSlug", slug_schema),
             |slug| ListedSite::read(slug).map(|site| (site.place(), true)),
             |object| Some((site(object)?, false)),
         )

@@ -350,13 +350,13 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
     pub fn text_or<T>(
         self,
         union: &WordOrObject,
-        schema: impl FnOnce() -> Value,
+        (name_of_text, schema): (&'static str, impl FnOnce() -> Value),
         from_text: impl Fn(&str) -> Result<T, String>,
         read: impl Fn(&mut Object) -> Option<T>,
     ) -> Option<T> {
         self.take(
             |object| {
-                let text = schema();
+                let text = object.component(name_of_text, schema());
                 let described = described(object, &read);
                 object.component(union.name, json!({"oneOf": [described, text], "description": union.doc}))
             },
