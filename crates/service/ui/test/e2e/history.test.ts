@@ -103,7 +103,7 @@ it('a new case has standard air and degrees, flies to the ground, and gets no wa
   const page = await on(example('target_2'));
   await page.getByRole('button', { name: 'New', exact: true }).click();
   await expect.poll(async () => (await caseOf(page)).name).toBe('New case');
-  expect(await caseOf(page)).toMatchObject({ angle_unit: 'deg', atmosphere: { type: 'us76' } });
+  expect(await caseOf(page)).toMatchObject({ angle_unit: 'deg', atmosphere: { type: 'standard' } });
   await page.locator('.card', { hasText: 'Impact' }).waitFor();
   expect(await page.locator('.notice').count()).toBe(0);
   await page.close();

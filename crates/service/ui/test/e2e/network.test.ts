@@ -98,7 +98,9 @@ it('a slider asks for fewer rows than the flight has at rest, and for no column 
     if (request.url().endsWith('/simulate')) asked.push(request.postDataJSON());
   });
   await dragged(page, 1000);
-  await page.waitForTimeout(1000);
+  // The flight at rest comes last, when the page has had the time.
+  const fewest = () => Math.min(...asked.map((request) => request.output.samples_per_step));
+  await expect.poll(() => (asked.at(-1)?.output.samples_per_step ?? 0) > fewest(), { timeout: 10_000 }).toBe(true);
   const resting = asked.at(-1)?.output;
   const moving = asked.sort((a, b) => a.output.samples_per_step - b.output.samples_per_step)[0];
   expect(moving?.output.samples_per_step).toBeLessThan(resting?.samples_per_step as number);
