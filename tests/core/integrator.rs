@@ -11,7 +11,7 @@ use crate::check::{near, relative};
 use crate::core::flights::target_2;
 
 /// The plane Kepler problem with eccentricity 0.5 from periapsis: period 2π, energy -1/2.
-struct Kepler;
+pub(crate) struct Kepler;
 
 impl<S: Scalar> System<S, 4> for Kepler {
     fn derivative(&self, _: S, state: &[S; 4]) -> [S; 4] {

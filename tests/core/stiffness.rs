@@ -14,6 +14,7 @@ use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, PlanetFixed, 
 
 use crate::check::{near, relative};
 use crate::core::flights::{fly, spherical, target_2, vehicle, with_tolerance};
+use crate::core::integrator::Kepler;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
@@ -143,18 +144,7 @@ impl Known<2> for VanDerPol {
     }
 }
 
-/// The plane Kepler problem with eccentricity 0.5 from periapsis, said to be stiff where it is not.
-struct Kepler;
-
-impl<S: Scalar> System<S, 4> for Kepler {
-    fn derivative(&self, _: S, state: &[S; 4]) -> [S; 4] {
-        let [x, y, vx, vy] = *state;
-        let squared = x * x + y * y;
-        let pull = (squared * squared.sqrt()).recip();
-        [vx, vy, -x * pull, -y * pull]
-    }
-}
-
+/// Said to be stiff where it is not.
 impl Known<4> for Kepler {
     fn decay(&self, _: &[f64; 4]) -> f64 {
         1e4

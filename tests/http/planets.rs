@@ -344,6 +344,9 @@ async fn an_inertial_state_at_a_body_warns_of_its_frame() {
             warning["detail"].as_str().unwrap().contains(&format!("the equator of {title}, with the x axis")),
             "{warning}"
         );
+        let turned = good_answer(&service, "/convert", &with(&request, "/state/sidereal_angle", 0.1)).await;
+        let detail = turned["warnings"][0]["detail"].as_str().unwrap();
+        assert!(detail.contains("turned by the sidereal time or angle of the state"), "{turned}");
         for without_it in [
             without(&request, "/epoch"),
             with(&request, "/state", json!({"type": "ecef", "position": [7e6, 0, 1e6], "velocity": [0, 5e3, 0]})),

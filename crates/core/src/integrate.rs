@@ -1,5 +1,5 @@
-//! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), and where y' = f(y) is stiff with the implicit method Radau IIA of order
-//! 5, the error kept below a tolerance step by step.
+//! Solves y' = f(y) with the method of Dormand and Prince of order 8(5,3), and where it is stiff with the implicit method Radau IIA of order 5;
+//! the error is kept below a tolerance step by step.
 //!
 //! This module knows nothing of flight: a [`System`] says how the state changes, an [`Integrator`] takes steps,
 //! the [`Interpolant`] of a [`Step`] gives the state at every instant inside it, and [`event`] looks there for falls through zero and

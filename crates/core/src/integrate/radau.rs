@@ -78,7 +78,7 @@ pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
 /// The state at the end of a step that was taken before, from a time over a length, s, from another start: see [`follow`](super::follow).
 ///
 /// The derivatives, too, converge like the iterations of the flight, which gained a digit each at least. `jacobian` is that of the
-/// system without derivatives.
+/// system without derivatives; where the iterations have no equations by it, as those of the flight had, the end is no number.
 pub fn follow_implicitly<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
     jacobian: &[[f64; N]; N],
@@ -86,7 +86,7 @@ pub fn follow_implicitly<F: System<S, N>, S: Scalar<Value = f64>, const N: usize
     time: f64,
     length: f64,
 ) -> [S; N] {
-    let Some(newton) = Newton::new(jacobian, length) else { return *start };
+    let Some(newton) = Newton::new(jacobian, length) else { return start.map(|_| S::from(f64::NAN)) };
     let mut stages = newton.first_guess(&system.derivative(time.into(), start));
     for _ in 0..ITERATIONS {
         newton.improve(system, time, start, &mut stages);

@@ -248,9 +248,13 @@ impl Warning {
     pub fn of_frame(state: &State, epoch: Option<Epoch>, planet: &Planet) -> Option<Self> {
         let frame = state.frame.filter(|_| epoch.is_some())?;
         if let PlanetModel::Body(body) = planet.model {
+            let axis = if state.gives_sidereal() {
+                "turned by the sidereal time or angle of the state"
+            } else {
+                "with the x axis at its ascending node on the equator of the ICRF"
+            };
             let detail = format!(
-                "Inertial frame is date: the equator of {}, with the x axis at its ascending node on the equator of the ICRF. Vectors in \
-                 the ICRF or EME2000 must be turned into it first",
+                "Inertial frame is date: the equator of {}, {axis}. Vectors in the ICRF or EME2000 must be turned into it first",
                 body.title
             );
             return Some(Self::new("inertial_frame_of_date", &detail));
