@@ -20,9 +20,6 @@ const GREATEST_HEALTH_P99: f64 = 20.0;
 const LONGEST_RECOVERY: f64 = 1.0;
 /// How many times its unloaded value the median of short requests may be when all is as before.
 const CALM: f64 = 2.0;
-/// How often the largest answer may be held for each worker: as rows, as a text that grows, which is twice where it is moved, and as those
-/// that were computed before, while their clients read them.
-const ANSWER_COPIES: usize = 8;
 /// Queues that are drawn to see what the worst of a hundred is worth.
 const QUEUES: usize = 10_000;
 /// Wrong answers that are printed of a flood.
@@ -97,7 +94,7 @@ impl Usual {
     /// What may be resident, bytes.
     fn memory_bar(&self, connections: usize, plan: &Plan) -> u64 {
         let largest = self.tallies.iter().map(|tally| tally.largest).max().unwrap_or(0);
-        self.memory + (ANSWER_COPIES * self.workers * largest + plan.connection * connections) as u64
+        self.memory + (plan.answer_copies * self.workers * largest + plan.connection * connections) as u64
     }
 
     /// Prints it.

@@ -56,6 +56,9 @@ struct Plan {
     unloaded: Duration,
     /// What a connection may hold, bytes: the buffers of its two directions and what is known of its request.
     connection: usize,
+    /// How often the largest answer may be held for each worker: as rows, as a text that grows, which is twice where it is moved, and as
+    /// those that were computed before, while their clients read them.
+    answer_copies: usize,
     /// Whether the bars of time are held.
     timed: bool,
 }
@@ -67,16 +70,18 @@ const FULL: Plan = Plan {
     capacity: Duration::from_secs(4),
     unloaded: Duration::from_secs(1),
     connection: 64 << 10,
+    answer_copies: 8,
     timed: true,
 };
 
-/// Some ten seconds. On a busy machine connections are many, and a test is to know growth without bound alone.
+/// Some ten seconds. On a busy machine connections are many and read late, and a test is to know growth without bound alone.
 const BRIEF: Plan = Plan {
     factors: &[1.0, 5.0],
     flood: Duration::from_secs(1),
     capacity: Duration::from_secs(1),
     unloaded: Duration::from_millis(200),
     connection: 64 << 10,
+    answer_copies: 16,
     timed: false,
 };
 
