@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
+use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity, Trigger};
 use reentry::heating::Heating;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::sensitivity::sensitivities;
@@ -146,7 +146,7 @@ fn pad() -> Case {
 
 fn ignition(force: f64) -> Effect {
     let thrust = Thrust { along: ThrustAxis::Radial, force, specific_impulse: Some(250.0), propellant: Some(40.0) };
-    Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
+    Effect { thrust: Some(ThrustCommand::On(thrust)), ..Effect::default() }
 }
 
 /// A thrust of five weights lifts it; of less than one it does not. The reference is an independent integration: `SciPy`'s DOP853 at 1e-12 of
@@ -288,8 +288,8 @@ fn derivatives_pass_through_a_condition_on_the_heat_load() {
 fn a_condition_on_the_mass_ends_a_burn() {
     let thrust = Thrust { along: ThrustAxis::Velocity, force: -2e4, specific_impulse: Some(300.0), propellant: None };
     let events = vec![
-        event(rises(Quantity::Time, 5.0), Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }),
-        event(falls(Quantity::Mass, 650.0), Effect { engine: Some(Engine::Off), ..Effect::default() }),
+        event(rises(Quantity::Time, 5.0), Effect { thrust: Some(ThrustCommand::On(thrust)), ..Effect::default() }),
+        event(falls(Quantity::Mass, 650.0), Effect { thrust: Some(ThrustCommand::Off), ..Effect::default() }),
     ];
     let flight = fly(&Case { events, ..target_2() });
     let burnt = 50.0 / (2e4 / (9.806_65 * 300.0));

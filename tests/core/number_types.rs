@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use num_dual::Dual64;
 use proptest::prelude::*;
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity};
 use reentry::heating::Heating;
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};
@@ -277,9 +277,9 @@ fn sensitivities_hold_across_events() {
     let pushed = |along| Effect { impulse: Some(Impulse { along, speed_change: -150.0 }), ..Effect::default() };
     let burns = |along, propellant| {
         let thrust = Thrust { along, force: -9000.0, specific_impulse: Some(250.0), propellant };
-        Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
+        Effect { thrust: Some(ThrustCommand::On(thrust)), ..Effect::default() }
     };
-    let off = Effect { engine: Some(Engine::Off), ..Effect::default() };
+    let off = Effect { thrust: Some(ThrustCommand::Off), ..Effect::default() };
     let altitude = |value| when(Quantity::Altitude, value);
     let deploys = |drag_area, inflation_time, delay| {
         let parachute = Parachute { drag_area, inflation_time, delay };

@@ -341,7 +341,7 @@ fn faults_of_parachutes_name_their_place() {
     let thrust = Thrust { along: ThrustAxis::Radial, force: 1.0, specific_impulse: None, propellant: Some(1.0) };
     let unburnt = faults(vec![at(1.0, switch_on(thrust))]);
     assert!(
-        matches!(&unburnt[..], [Fault::PropellantUnused { field }] if field == "events.0.then.engine.propellant"),
+        matches!(&unburnt[..], [Fault::PropellantUnused { field }] if field == "events.0.then.thrust.propellant"),
         "{unburnt:?}"
     );
 }

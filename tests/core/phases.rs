@@ -1,6 +1,6 @@
 //! The phases of a flight, between the events that change the vehicle, and their peaks.
 
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
+use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity, Trigger};
 use reentry::heating::{Heating, Radiative};
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
@@ -33,7 +33,7 @@ fn impulse(speed_change: f64) -> Effect {
 
 fn thrust(force: f64, propellant: Option<f64>) -> Effect {
     let thrust = Thrust { along: ThrustAxis::Velocity, force, specific_impulse: Some(300.0), propellant };
-    Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
+    Effect { thrust: Some(ThrustCommand::On(thrust)), ..Effect::default() }
 }
 
 /// The capsule with a heat shield.
@@ -174,7 +174,7 @@ fn events_of_one_instant_begin_one_phase() {
     let list = vec![
         Event { when: at(10.0), then: thrust(-5000.0, Some(30.0)) },
         Event { when: at(100.0), then: thrust(-5000.0, Some(20.0)) },
-        Event { when: at(120.0), then: Effect { engine: Some(Engine::Off), ..Effect::default() } },
+        Event { when: at(120.0), then: Effect { thrust: Some(ThrustCommand::Off), ..Effect::default() } },
     ];
     let flight = fly(&with(list));
     let expected = [

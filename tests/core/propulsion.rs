@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 use reentry::coordinates::{Inertial, OrbitalElements};
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity};
 use reentry::planet::Shape;
 use reentry::propulsion::{Impulse, STANDARD_GRAVITY, Thrust, ThrustAxis};
 use reentry::simulate::SimulationError;
@@ -26,11 +26,11 @@ pub(crate) fn at(time: f64, then: Effect) -> Event {
 }
 
 pub(crate) fn switch_on(thrust: Thrust) -> Effect {
-    Effect { engine: Some(Engine::On(thrust)), ..Effect::default() }
+    Effect { thrust: Some(ThrustCommand::On(thrust)), ..Effect::default() }
 }
 
 pub(crate) fn switch_off() -> Effect {
-    Effect { engine: Some(Engine::Off), ..Effect::default() }
+    Effect { thrust: Some(ThrustCommand::Off), ..Effect::default() }
 }
 
 fn push(along: ThrustAxis, speed_change: f64) -> Effect {

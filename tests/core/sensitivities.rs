@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity, Trigger};
+use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity, Trigger};
 use reentry::heating::Heating;
 use reentry::parachute::Parachute;
 use reentry::planet::{Gravity, Zonal};
@@ -145,8 +145,8 @@ fn at_altitude(value: f64, then: Effect) -> Event {
 }
 
 fn thrust(case: &mut Case, event: usize) -> &mut Thrust {
-    match &mut case.events[event].then.engine {
-        Some(Engine::On(thrust)) => thrust,
+    match &mut case.events[event].then.thrust {
+        Some(ThrustCommand::On(thrust)) => thrust,
         other => panic!("{other:?}"),
     }
 }
@@ -174,7 +174,7 @@ fn eventful() -> Case {
         vehicle: Vehicle { nose_radius: Some(0.3), ..target_2().vehicle },
         heating: Some(heating()),
         events: vec![
-            at_altitude(70e3, Effect { engine: Some(Engine::On(burn)), ..Effect::default() }),
+            at_altitude(70e3, Effect { thrust: Some(ThrustCommand::On(burn)), ..Effect::default() }),
             Event { when, then: Effect { impulse: Some(push), ..Effect::default() } },
             at_altitude(30e3, Effect { aerodynamics, mass: Some(550.0), ..Effect::default() }),
             at_altitude(12e3, Effect { deploy: Some(parachute), ..Effect::default() }),

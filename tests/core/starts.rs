@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, Engine, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity};
 use reentry::propulsion::{Thrust, ThrustAxis};
 use reentry::trajectory::Sampling;
 use reentry::{Case, Control, Stop};
@@ -16,7 +16,7 @@ fn by_the_clock() -> Case {
     let at_60 = Condition { quantity: Quantity::Time, value: 60.0, direction: Direction::Rising };
     let along = ThrustAxis::inertial([1.0, -2.0, 0.7]).unwrap();
     let thrust = Thrust { along, force: 3000.0, specific_impulse: Some(250.0), propellant: Some(20.0) };
-    let then = Effect { engine: Some(Engine::On(thrust)), ..Effect::default() };
+    let then = Effect { thrust: Some(ThrustCommand::On(thrust)), ..Effect::default() };
     Case {
         control: Control { bank_angle: Command::Schedule(Arc::new(schedule)), ..Control::banked(0.0) },
         events: vec![Event { when: at_60.into(), then }],

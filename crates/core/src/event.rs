@@ -128,8 +128,8 @@ pub struct Effect {
     pub aerodynamics: Option<Aerodynamics>,
     /// A change of velocity.
     pub impulse: Option<Impulse>,
-    /// The engine.
-    pub engine: Option<Engine>,
+    /// The thrust.
+    pub thrust: Option<ThrustCommand>,
     /// The parachutes that are cut off, each by the number of the event that deploys it; one that is not there stays away.
     pub release: Vec<usize>,
     /// A parachute that is deployed, after those that are cut off.
@@ -138,10 +138,10 @@ pub struct Effect {
 
 /// How an event changes the thrust.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Engine {
-    /// The engine starts; a thrust that acts ends.
+pub enum ThrustCommand {
+    /// A thrust starts; one that acts ends.
     On(Thrust),
-    /// The engine stops.
+    /// The thrust ends.
     Off,
 }
 
@@ -214,9 +214,9 @@ impl Condition {
 impl Effect {
     /// The thrust that is switched on, if one is.
     pub(crate) fn thrust(&self) -> Option<&Thrust> {
-        match &self.engine {
-            Some(Engine::On(thrust)) => Some(thrust),
-            Some(Engine::Off) | None => None,
+        match &self.thrust {
+            Some(ThrustCommand::On(thrust)) => Some(thrust),
+            Some(ThrustCommand::Off) | None => None,
         }
     }
 
@@ -227,8 +227,8 @@ impl Effect {
 
     /// Whether it changes the vehicle or its thrust; an impulse changes the velocity alone.
     pub fn changes_vehicle(&self) -> bool {
-        let Self { mass, reference_area, aerodynamics, impulse: _, engine, release, deploy } = self;
+        let Self { mass, reference_area, aerodynamics, impulse: _, thrust, release, deploy } = self;
         let is_changed = mass.is_some() || reference_area.is_some() || aerodynamics.is_some();
-        is_changed || engine.is_some() || !release.is_empty() || deploy.is_some()
+        is_changed || thrust.is_some() || !release.is_empty() || deploy.is_some()
     }
 }

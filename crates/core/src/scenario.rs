@@ -19,7 +19,7 @@ use std::sync::Arc;
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
 use crate::coordinates::{GreatCircle, PlanetFixed};
-use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
+use crate::event::{Condition, Direction, ThrustCommand, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters, State};
 use crate::number_text::apart;
@@ -353,8 +353,8 @@ impl Case {
             || effects.clone().any(|effect| effect.aerodynamics.as_ref().is_some_and(Aerodynamics::has_lift))
             || effects.clone().any(|effect| effect.reference_area.is_some()) && self.vehicle.aerodynamics.has_lift()
             || effects
-                .filter_map(|effect| effect.engine)
-                .any(|engine| matches!(engine, Engine::On(thrust) if thrust.along.is_level()))
+                .filter_map(|effect| effect.thrust)
+                .any(|thrust| matches!(thrust, ThrustCommand::On(thrust) if thrust.along.is_level()))
     }
 
     /// The same case, which shares with another what is equal in both and may be large: tables, layers and schedules.
@@ -470,11 +470,11 @@ impl Case {
     fn effect_faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         for (index, Event { then, .. }) in self.events.iter().enumerate() {
-            if let Some(Engine::On(thrust)) = then.engine
+            if let Some(ThrustCommand::On(thrust)) = then.thrust
                 && thrust.propellant.is_some()
                 && thrust.specific_impulse.is_none()
             {
-                faults.push(Fault::PropellantUnused { field: format!("events.{index}.then.engine.propellant") });
+                faults.push(Fault::PropellantUnused { field: format!("events.{index}.then.thrust.propellant") });
             }
             let deploys = |event: usize| self.events.get(event).is_some_and(|event| event.then.deploy.is_some());
             let unknown = then.release.iter().enumerate().filter(|(_, event)| !deploys(**event));

@@ -7,7 +7,7 @@ use std::fmt;
 use super::{Case, Fault};
 use crate::atmosphere::Atmosphere;
 use crate::control::Command;
-use crate::event::{Condition, Effect, Engine, Quantity, Trigger};
+use crate::event::{Condition, Effect, ThrustCommand, Quantity, Trigger};
 use crate::heating::{Convective, Heating};
 use crate::number_text::{NumberText, apart};
 use crate::parachute::Parachute;
@@ -223,11 +223,11 @@ fn numbers(index: usize, effect: &Effect) -> Vec<Check> {
     checks.extend(effect.mass.map(|mass| of("mass", mass, Bound::POSITIVE)));
     checks.extend(effect.reference_area.map(|area| of("reference_area", area, Bound::NON_NEGATIVE)));
     checks.extend(effect.impulse.map(|impulse| of("impulse.speed_change", impulse.speed_change, Bound::VELOCITY)));
-    if let Some(Engine::On(thrust)) = effect.engine {
-        checks.push(of("engine.force", thrust.force, Bound::FORCE));
+    if let Some(ThrustCommand::On(thrust)) = effect.thrust {
+        checks.push(of("thrust.force", thrust.force, Bound::FORCE));
         let specific_impulse = thrust.specific_impulse.into_iter();
-        checks.extend(specific_impulse.map(|it| of("engine.specific_impulse", it, Bound::SPECIFIC_IMPULSE)));
-        checks.extend(thrust.propellant.map(|mass| of("engine.propellant", mass, Bound::POSITIVE)));
+        checks.extend(specific_impulse.map(|it| of("thrust.specific_impulse", it, Bound::SPECIFIC_IMPULSE)));
+        checks.extend(thrust.propellant.map(|mass| of("thrust.propellant", mass, Bound::POSITIVE)));
     }
     if let Some(Parachute { drag_area, inflation_time, delay }) = effect.deploy {
         checks.push(of("deploy.drag_area", drag_area, Bound::DRAG_AREA));

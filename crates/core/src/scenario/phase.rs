@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Case, Numbers};
-use crate::event::{Effect, Engine};
+use crate::event::{Effect, ThrustCommand};
 use crate::motion::{Burn, Forces};
 use crate::parachute::{Canopies, Canopy, Parachute};
 use crate::propulsion::Thrust;
@@ -128,10 +128,10 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             mass,
             ..self.vehicle
         };
-        let (thrust, thrust_of) = match effect.engine {
+        let (thrust, thrust_of) = match effect.thrust {
             None => (thrust_left, self.thrust_of),
-            Some(Engine::On(Thrust { force: 0.0, .. }) | Engine::Off) => (None, None),
-            Some(Engine::On(Thrust { along, .. })) => {
+            Some(ThrustCommand::On(Thrust { force: 0.0, .. }) | ThrustCommand::Off) => (None, None),
+            Some(ThrustCommand::On(Thrust { along, .. })) => {
                 let force = number(|effect| effect.thrust().map(|thrust| thrust.force)).unwrap_or_else(P::zero);
                 let specific_impulse = number(|effect| effect.thrust()?.specific_impulse);
                 let propellant = number(|effect| effect.thrust()?.propellant);

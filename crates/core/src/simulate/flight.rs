@@ -10,7 +10,7 @@ use super::detector::{Detector, cut_at_first};
 use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boundary_in_time};
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
-use crate::event::{Effect, Engine};
+use crate::event::{Effect, ThrustCommand};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Chatter, Formulation, MASS, Singularity, State, StateRate};
@@ -232,7 +232,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// The thrust that is on has no direction.
     fn no_direction(&self, time: f64) -> SimulationError {
         let switches_on =
-            |event: &usize| matches!(self.scenario.case().events[*event].then.engine, Some(Engine::On(_)));
+            |event: &usize| matches!(self.scenario.case().events[*event].then.thrust, Some(ThrustCommand::On(_)));
         let event = self.log.event_records.iter().rev().map(|record| record.event).find(switches_on).unwrap_or(0);
         let altitude = self.scenario.case().planet.shape.altitude(&F::state(&self.state).position);
         SimulationError::NoDirection { event, time, altitude }
@@ -291,7 +291,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// Warns of a thrust that has no direction where it is switched on, and of parachutes that are not there to be cut off.
     fn warn_of(&mut self, event: usize, effect: &Effect) {
         let time = self.time;
-        if let Some(Engine::On(thrust)) = effect.engine
+        if let Some(ThrustCommand::On(thrust)) = effect.thrust
             && thrust.force != 0.0
             && self.direction(thrust.along).is_none()
         {

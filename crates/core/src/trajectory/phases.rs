@@ -1,7 +1,7 @@
 //! The phases of a flight: between the instants at which events change the vehicle.
 
 use super::{EventRecord, HeatingPeaks, Peak, Peaks, Trajectory};
-use crate::event::Engine;
+use crate::event::ThrustCommand;
 
 /// A part of a flight in which the vehicle and its thrust stay the same.
 ///
@@ -65,8 +65,8 @@ impl Trajectory {
         }
         let [was_on, is_on] = [before, phase].map(|phase| self.flown.phases[phase].thrust.is_some());
         let ignites = |record: &&EventRecord| {
-            let engine = effect(record.event).engine;
-            record.after.phase <= before && matches!(engine, Some(Engine::On(thrust)) if thrust.force != 0.0)
+            let thrust = effect(record.event).thrust;
+            record.after.phase <= before && matches!(thrust, Some(ThrustCommand::On(thrust)) if thrust.force != 0.0)
         };
         let ignition = event_records.iter().rfind(ignites).filter(|_| was_on && !is_on);
         ignition.map(|record| PhaseStart::Burnout(record.event))

@@ -5,7 +5,7 @@ use std::collections::hash_map::Entry;
 
 use reentry::coordinates::Rotation;
 use reentry::event::{
-    Condition as Crossing, Direction, Effect as CoreEffect, Engine, Event as CoreEvent, Quantity, Trigger,
+    Condition as Crossing, Direction, Effect as CoreEffect, ThrustCommand, Event as CoreEvent, Quantity, Trigger,
 };
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
@@ -233,11 +233,11 @@ fn effect(object: &mut Object) -> Option<Effect> {
         .doc("Impulsive change of velocity. It consumes no propellant: set `mass` to the mass after it.")
         .optional()
         .object(impulse);
-    let engine = object
+    let thrust = object
         .field("thrust", "Thrust")
         .doc("Constant thrust that the event switches on, or `\"off\"`.")
         .optional()
-        .word_or(&THRUST_COMMAND, &OFF, |object| thrust(object).map(Engine::On));
+        .word_or(&THRUST_COMMAND, &OFF, |object| thrust(object).map(ThrustCommand::On));
     let parachute = object
         .field("deploy", "Deploy parachute")
         .doc("Parachute that the event deploys.")
@@ -252,7 +252,7 @@ fn effect(object: &mut Object) -> Option<Effect> {
         .optional()
         .texts(MOST_EVENTS);
     let (deployed, deploy) = parachute.unzip();
-    let core = CoreEffect { mass, reference_area, aerodynamics, impulse, engine, release: Vec::new(), deploy };
+    let core = CoreEffect { mass, reference_area, aerodynamics, impulse, thrust, release: Vec::new(), deploy };
     Some(Effect { core, deployed, released: released.unwrap_or_default() })
 }
 
@@ -273,7 +273,7 @@ fn impulse(object: &mut Object) -> Option<Impulse> {
 /// What becomes of the thrust.
 const THRUST_COMMAND: WordOrObject = WordOrObject { name: "ThrustCommand", doc: "New thrust, or `\"off\"`." };
 
-const OFF: Words<Engine> = Words { name: "", doc: "Switches the thrust off.", words: &[word("off", Engine::Off, "")] };
+const OFF: Words<ThrustCommand> = Words { name: "", doc: "Switches the thrust off.", words: &[word("off", ThrustCommand::Off, "")] };
 
 fn thrust(object: &mut Object) -> Option<Thrust> {
     object.named(
@@ -399,7 +399,7 @@ impl Event {
         if let Some(impulse) = &mut then.impulse {
             impulse.along = turned(impulse.along);
         }
-        if let Some(Engine::On(thrust)) = &mut then.engine {
+        if let Some(ThrustCommand::On(thrust)) = &mut then.thrust {
             thrust.along = turned(thrust.along);
         }
         CoreEvent { when: self.when.to_core(events), then }
@@ -407,21 +407,21 @@ impl Event {
 
     /// Whether it may change the mass.
     pub fn changes_mass(&self) -> bool {
-        let CoreEffect { mass, engine, .. } = &self.then.core;
-        mass.is_some() || matches!(engine, Some(Engine::On(thrust)) if thrust.specific_impulse.is_some())
+        let CoreEffect { mass, thrust, .. } = &self.then.core;
+        mass.is_some() || matches!(thrust, Some(ThrustCommand::On(thrust)) if thrust.specific_impulse.is_some())
     }
 
     /// Whether it switches a thrust on or off.
     pub fn changes_thrust(&self) -> bool {
-        self.then.core.engine.is_some()
+        self.then.core.thrust.is_some()
     }
 
     /// Whether it pushes the vehicle along a direction that stays in inertial space.
     fn is_inertial(&self) -> bool {
         let is_inertial = |axis: ThrustAxis| matches!(axis, ThrustAxis::Inertial(_));
-        let CoreEffect { impulse, engine, .. } = &self.then.core;
+        let CoreEffect { impulse, thrust, .. } = &self.then.core;
         impulse.is_some_and(|impulse| is_inertial(impulse.along))
-            || matches!(engine, Some(Engine::On(thrust)) if is_inertial(thrust.along))
+            || matches!(thrust, Some(ThrustCommand::On(thrust)) if is_inertial(thrust.along))
     }
 
     /// Inertial directions on a planet whose angle nobody knows: an epoch says nothing about it, and the state does not give it.
