@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity, Trigger};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, ThrustCommand, Trigger};
 use reentry::heating::Heating;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::sensitivity::sensitivities;

@@ -70,6 +70,7 @@ fn of(quantity: Quantity, point: &FlightPoint) -> f64 {
         }
         Quantity::Deceleration => point.loads.deceleration,
         Quantity::Density => point.loads.density,
+        Quantity::UpwardAcceleration => unreachable!("it is of the ground alone"),
     }
 }
 

@@ -19,6 +19,7 @@ mod model_modes;
 mod nrlmsise00;
 mod number_types;
 mod parachutes;
+mod parts;
 mod phases;
 mod pitfalls;
 mod properties;

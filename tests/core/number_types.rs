@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use num_dual::Dual64;
 use proptest::prelude::*;
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, ThrustCommand};
 use reentry::heating::Heating;
 use reentry::integrate::System;
 use reentry::motion::{Cartesian, Forces, Parameters, Spherical};

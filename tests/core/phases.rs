@@ -1,6 +1,6 @@
 //! The phases of a flight, between the events that change the vehicle, and their peaks.
 
-use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity, Trigger};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, ThrustCommand, Trigger};
 use reentry::heating::{Heating, Radiative};
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};

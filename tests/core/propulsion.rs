@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 use reentry::coordinates::{Inertial, OrbitalElements};
-use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, ThrustCommand};
 use reentry::planet::Shape;
 use reentry::propulsion::{Impulse, STANDARD_GRAVITY, Thrust, ThrustAxis};
 use reentry::simulate::SimulationError;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity, Trigger};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, ThrustCommand, Trigger};
 use reentry::heating::Heating;
 use reentry::parachute::Parachute;
 use reentry::planet::{Gravity, Zonal};
@@ -154,7 +154,7 @@ fn thrust(case: &mut Case, event: usize) -> &mut Thrust {
 fn trigger(case: &mut Case, event: usize) -> &mut f64 {
     match &mut case.events[event].when {
         Trigger::Condition(condition) => &mut condition.value,
-        Trigger::After { delay, .. } => delay,
+        Trigger::After { delay, .. } | Trigger::AfterBurnout { delay, .. } => delay,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use reentry::control::{Against, Command, Interpolation, Schedule};
-use reentry::event::{Condition, Direction, Effect, ThrustCommand, Event, Quantity};
+use reentry::event::{Condition, Direction, Effect, Event, Quantity, ThrustCommand};
 use reentry::propulsion::{Thrust, ThrustAxis};
 use reentry::trajectory::Sampling;
 use reentry::{Case, Control, Stop};

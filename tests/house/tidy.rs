@@ -5,10 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
-const CORE: [&[&str]; 12] = [
+const CORE: [&[&str]; 13] = [
     &["scalar", "root", "number_text", "interrupt"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
+    &["part", "steering"],
     &["event", "body"],
     &["coordinates"],
     &["wind"],

@@ -3,6 +3,7 @@
 use crate::parachute::Parachute;
 use crate::propulsion::{Impulse, Thrust};
 use crate::scalar::Scalar;
+use crate::steering::Steering;
 use crate::vehicle::Aerodynamics;
 
 /// Something that happens once in a flight.
@@ -28,6 +29,14 @@ pub enum Trigger {
         /// The time after that event, s; not negative.
         delay: f64,
     },
+    /// So much time has passed since an engine burnt out: its propellant was spent or its thrust profile over. One that is shut down does not
+    /// burn out.
+    AfterBurnout {
+        /// The place of its part in the list.
+        part: usize,
+        /// The time after the burnout, s; not negative.
+        delay: f64,
+    },
 }
 
 impl From<Condition> for Trigger {
@@ -41,7 +50,7 @@ impl Trigger {
     pub fn condition(&self) -> Option<&Condition> {
         match self {
             Self::Condition(condition) => Some(condition),
-            Self::After { .. } => None,
+            Self::After { .. } | Self::AfterBurnout { .. } => None,
         }
     }
 }
@@ -106,6 +115,9 @@ pub enum Quantity {
     Deceleration,
     /// Of the air, kg/m³.
     Density,
+    /// Of a vehicle that nothing holds and that is at rest, along the outward normal of the planet's shape, m/s²: what thrust, gravity and the
+    /// turning of the planet give it.
+    UpwardAcceleration,
 }
 
 /// A side of a value.
@@ -134,6 +146,51 @@ pub struct Effect {
     pub release: Vec<usize>,
     /// A parachute that is deployed, after those that are cut off.
     pub deploy: Option<Parachute>,
+    /// Whether a vehicle that was held on the ground is set free.
+    pub lift_off: bool,
+    /// What leaves the vehicle, before all else.
+    pub separate: Vec<Separation>,
+    /// The parts whose engines are shut down, each by its place in the list.
+    pub shut_down: Vec<usize>,
+    /// The parts whose engines are lit, each by its place in the list.
+    pub ignite: Vec<usize>,
+    /// How far engines are throttled, whether they are lit yet or not.
+    pub throttle: Vec<Throttle>,
+    /// The load factor that throttles all engines alike, once it is reached; none within the outer option where it no longer does.
+    pub load_limit: Option<Option<f64>>,
+    /// Where the axis of the vehicle points.
+    pub steer: Option<Steering>,
+    /// A turn of the velocity.
+    pub tilt: Option<Tilt>,
+}
+
+/// Parts that leave the vehicle together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Separation {
+    /// Each by its place in the list.
+    pub parts: Vec<usize>,
+    /// What it adds to their velocity; the vehicle that remains keeps its own.
+    pub push: Option<Impulse>,
+    /// The place of their case in the list of bodies.
+    pub body: usize,
+}
+
+/// How far the engines of a part are throttled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Throttle {
+    /// Its place in the list of parts.
+    pub part: usize,
+    /// The share of thrust in vacuum and of mass flow, from 0 to 1.
+    pub value: f64,
+}
+
+/// A turn of the velocity at an instant, that keeps the speed: the pitch-over of a launch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tilt {
+    /// From the direction away from the planet's centre, rad.
+    pub angle: f64,
+    /// Towards which it turns, clockwise from north, rad.
+    pub azimuth: f64,
 }
 
 /// How an event changes the thrust.
@@ -147,7 +204,7 @@ pub enum ThrustCommand {
 
 impl Quantity {
     /// All of them.
-    pub(crate) const ALL: [Self; 21] = [
+    pub(crate) const ALL: [Self; 22] = [
         Self::Time,
         Self::Altitude,
         Self::Speed,
@@ -169,6 +226,7 @@ impl Quantity {
         Self::GroundRange,
         Self::Deceleration,
         Self::Density,
+        Self::UpwardAcceleration,
     ];
 
     /// Whether it is an angle.
@@ -227,8 +285,6 @@ impl Effect {
 
     /// Whether it changes the vehicle or its thrust; an impulse changes the velocity alone.
     pub fn changes_vehicle(&self) -> bool {
-        let Self { mass, reference_area, aerodynamics, impulse: _, thrust, release, deploy } = self;
-        let is_changed = mass.is_some() || reference_area.is_some() || aerodynamics.is_some();
-        is_changed || thrust.is_some() || !release.is_empty() || deploy.is_some()
+        *self != Self { impulse: self.impulse, tilt: self.tilt, ..Self::default() }
     }
 }

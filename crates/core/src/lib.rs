@@ -87,8 +87,10 @@ pub mod control;
 pub mod event;
 pub mod heating;
 pub mod parachute;
+pub mod part;
 pub mod planet;
 pub mod propulsion;
+pub mod steering;
 pub mod vehicle;
 pub mod wind;
 

@@ -8,16 +8,19 @@ mod quantity;
 mod rest;
 mod spherical;
 mod state;
+mod thrust;
 
 pub use cartesian::Cartesian;
 pub use loads::Loads;
 pub use model_mode::{ModelMode, Switch, TableId};
 pub use spherical::Spherical;
 pub use state::State;
+pub use thrust::{Burn, ThrustDirection};
 
 pub(crate) use model_mode::{Chatter, SwitchQuantity};
 pub(crate) use quantity::StateRate;
 pub(crate) use state::MASS;
+pub(crate) use thrust::{along, direction, tilted};
 
 use nalgebra::Vector3;
 use num_dual::Dual64;
@@ -30,11 +33,12 @@ use crate::integrate::StepBounds;
 use crate::interpolation::Hint;
 use crate::parachute::Canopies;
 use crate::planet::{Gravity, Planet};
-use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
+use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
-use directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
+use directions::{Directions, lift_fade_over_cosine, wind_fade};
+use thrust::Push;
 
 /// Within this angle of the vertical the lift fades out, rad: in vertical flight the bank angle has no meaning.
 pub const LIFT_FADE_ANGLE: f64 = 1e-3;
@@ -62,10 +66,12 @@ pub struct Forces<P = f64> {
     mass: P,
     /// Sine and cosine of a constant bank angle.
     sin_cos_bank: (P, P),
-    /// The thrust, while the engine runs.
+    /// The thrust, while one acts.
     burn: Option<Burn<P>>,
     /// The parachutes that are deployed.
     canopies: Option<Canopies<P>>,
+    /// Whether the vehicle is held on the ground: it stays where it is, and burns.
+    held: bool,
     /// The segment of each piecewise model that is in use.
     mode: ModelMode,
     /// Whether any model is piecewise.
@@ -75,6 +81,8 @@ pub struct Forces<P = f64> {
     of_thesis: bool,
     /// Whether coefficients or angles depend on the Mach number.
     by_mach: bool,
+    /// Whether the angle of attack is that of the axis of the vehicle, as it is steered, to the velocity relative to the air.
+    by_axis: bool,
     cache: LookupCache,
 }
 
@@ -99,6 +107,8 @@ pub struct Models {
     pub aerodynamics: Aerodynamics,
     /// Bank angle and angle of attack.
     pub control: Control,
+    /// Where the axis of the vehicle points.
+    pub steering: Steering,
     /// The heating at the stagnation point; none where it is not asked for.
     pub heating: Option<Stagnation>,
 }
@@ -118,17 +128,6 @@ pub struct Parameters<P> {
     pub density: P,
     /// The bank angle, less that of the model, rad.
     pub bank_angle: P,
-}
-
-/// A thrust that acts, over the mass of the vehicle at the start of the phase, and the mass that it burns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Burn<P> {
-    /// The direction of the thrust.
-    pub along: ThrustAxis,
-    /// The thrust over the mass at the start of the phase, m/s².
-    pub acceleration: P,
-    /// The mass flow, kg/s.
-    pub mass_flow: P,
 }
 
 /// Powers over the mass, W/kg, or their work, J/kg.
@@ -185,6 +184,8 @@ struct Flow<S: nalgebra::Scalar> {
     density_and_mach: Option<(S, S)>,
     /// The mass at the start of the phase over the mass, where a thrust acts and the mass is integrated.
     mass_ratio: Option<S>,
+    /// Where the axis of the vehicle points, where the air asks for it.
+    axis: Option<Vector3<S>>,
 }
 
 /// What a unit of density does to the vehicle, at full lift: accelerations over the density, m⁴/(kg s²).
@@ -202,7 +203,8 @@ impl<P: Scalar> Forces<P> {
         let sin_cos_bank = parameters.bank_angle.sin_cos();
         let by_mach = models.depend_on_mach();
         let of_thesis = models.are_of_thesis();
-        let (burn, canopies) = (None, None);
+        let by_axis = models.steering.is_attitude() && matches!(models.aerodynamics, Aerodynamics::AlphaMachTable(_));
+        let (burn, canopies, held) = (None, None, false);
         let (mode, has_switches, cache) = (ModelMode::default(), false, LookupCache::default());
         let mut forces = Self {
             models,
@@ -212,10 +214,12 @@ impl<P: Scalar> Forces<P> {
             sin_cos_bank,
             burn,
             canopies,
+            held,
             mode,
             has_switches,
             of_thesis,
             by_mach,
+            by_axis,
             cache,
         };
         forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
@@ -231,13 +235,21 @@ impl<P: Scalar> Forces<P> {
     /// The same forces with a thrust, if there is one.
     #[must_use]
     pub fn burning(self, burn: Option<Burn<P>>) -> Self {
-        Self { of_thesis: self.of_thesis && burn.is_none(), burn, ..self }
+        let mut burning = Self { of_thesis: self.of_thesis && burn.is_none(), burn, ..self };
+        burning.has_switches |= burning.boundaries(Switch::LoadLimit).is_some();
+        burning
     }
 
     /// The same forces with the drag of parachutes, if there are any open.
     #[must_use]
     pub fn under(self, canopies: Option<Canopies<P>>) -> Self {
         Self { of_thesis: self.of_thesis && canopies.is_none(), canopies, ..self }
+    }
+
+    /// The same forces on a vehicle that is held on the ground, or not.
+    #[must_use]
+    pub fn held(self, held: bool) -> Self {
+        Self { of_thesis: self.of_thesis && !held, held, ..self }
     }
 
     /// The acceleration relative to the rotating planet, m/s².
@@ -270,6 +282,20 @@ impl<P: Scalar> Forces<P> {
 
     #[inline(always)]
     fn acceleration_in<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Vector3<S> {
+        if !THESIS && self.held {
+            return Vector3::from_element(S::zero());
+        }
+        let fall = self.fall::<THESIS, _>(state, flow);
+        let aerodynamic = self.aerodynamic::<THESIS, _>(time, flow);
+        match if THESIS { None } else { self.push(time, state, flow, &aerodynamic) } {
+            Some(push) => aerodynamic + push.acceleration + fall,
+            None => aerodynamic + fall,
+        }
+    }
+
+    /// The acceleration by gravity and by the turning of the planet, m/s².
+    #[inline(always)]
+    fn fall<const THESIS: bool, S: Over<P>>(&self, state: &State<S>, flow: &Flow<S>) -> Vector3<S> {
         let State { position, velocity, .. } = state;
         let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
@@ -278,23 +304,17 @@ impl<P: Scalar> Forces<P> {
         let mut fall = if THESIS { planet.gravity_of_point(*radius, up) } else { planet.gravity(*radius, up) };
         fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
         fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
-        match if THESIS { None } else { self.thrust(time, state) } {
-            Some(thrust) => self.aerodynamic::<THESIS, _>(time, flow) + thrust + fall,
-            None => self.aerodynamic::<THESIS, _>(time, flow) + fall,
-        }
+        fall
     }
 
-    /// The mass at the start of the phase over the mass, where a thrust acts and the mass is integrated.
-    #[inline(always)]
-    fn mass_ratio<S: Over<P>>(&self, mass: Option<S>) -> Option<S> {
-        let mass = mass.filter(|_| self.burn.is_some())?;
-        Some(mass.recip() * self.mass)
-    }
-
-    /// The rate of change of the mass, kg/s.
-    #[inline(always)]
-    fn mass_rate<S: Over<P>>(&self) -> S {
-        self.burn.as_ref().map_or(S::zero(), |burn| S::zero() + -burn.mass_flow)
+    /// The acceleration that a vehicle at rest, which nothing holds, has along the outward normal of the planet's shape, m/s²: by thrust,
+    /// gravity and the turning of the planet.
+    fn upward_acceleration<S: Over<P>>(&self, time: S, state: &State<S>) -> S {
+        let flow = self.flow::<false, _>(time, state);
+        let still = Vector3::from_element(S::zero());
+        let push = self.push(time, state, &flow, &still).map_or(still, |push| push.acceleration);
+        let normal = self.models.planet.shape.normal(&state.position);
+        (push + self.fall::<false, _>(state, &flow)).dot(&normal)
     }
 
     /// The sizes below which numbers of a state are as exact as if they had them. Errors of the mass do not count, which grows and falls
@@ -304,12 +324,23 @@ impl<P: Scalar> Forces<P> {
         State { mass: Some(f64::INFINITY), heat_load, ..State::from(PlanetFixed::from([0.0; 6])) }.numbers(coordinates)
     }
 
-    /// The acceleration, and the heat flux into the stagnation point, W/m², of the air that meets the vehicle.
+    /// The acceleration, the rate of the mass, kg/s, and the heat flux into the stagnation point, W/m², of the air that meets the vehicle.
     #[inline(always)]
-    fn acceleration_and_heat_flux<S: Over<P>>(&self, time: S, state: &State<S>) -> (Vector3<S>, S) {
+    fn acceleration_and_rates<S: Over<P>>(&self, time: S, state: &State<S>) -> (Vector3<S>, S, S) {
         let flow = self.flow::<false, _>(time, state);
-        let acceleration = self.acceleration_in::<false, _>(time, state, &flow);
-        (acceleration, self.heat_flux_of(&flow))
+        let aerodynamic = self.aerodynamic::<false, _>(time, &flow);
+        let push = self.push(time, state, &flow, &aerodynamic);
+        let throttle = push.as_ref().map_or_else(S::zero, |push| push.throttle);
+        let (mass_rate, heat_flux) = (self.mass_rate(time, throttle), self.heat_flux_of(&flow));
+        if self.held {
+            return (Vector3::from_element(S::zero()), mass_rate, heat_flux);
+        }
+        let fall = self.fall::<false, _>(state, &flow);
+        let acceleration = match push {
+            Some(Push { acceleration, .. }) => aerodynamic + acceleration + fall,
+            None => aerodynamic + fall,
+        };
+        (acceleration, mass_rate, heat_flux)
     }
 
     /// Into the stagnation point in a state, W/m²; none where no heating is asked for.
@@ -338,18 +369,6 @@ impl<P: Scalar> Forces<P> {
         Some(heating.heat_flux(self.mode.of(Switch::Radiation), density, air_speed))
     }
 
-    /// The thrust over the mass, m/s², where there is one.
-    ///
-    /// # Reference
-    /// K. D. Hicks, Introduction to Astrodynamic Reentry, 2006, page 58, to which Jameson 2006 points in its last chapter: the thrust
-    /// stands beside lift and drag; here it is constant and along one of a few directions.
-    #[inline(always)]
-    fn thrust<S: Over<P>>(&self, time: S, state: &State<S>) -> Option<Vector3<S>> {
-        let burn = self.burn.as_ref()?;
-        let acceleration = self.mass_ratio(state.mass).unwrap_or_else(S::one) * burn.acceleration;
-        Some(along(burn.along, &self.models.planet, time, &state.planet_fixed()) * acceleration)
-    }
-
     /// Lift and drag over the mass, m/s².
     ///
     /// ```text
@@ -364,6 +383,12 @@ impl<P: Scalar> Forces<P> {
     fn aerodynamic<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> Vector3<S> {
         let Directions { up, ahead, left, cos_gamma, .. } = &flow.directions;
         let air = self.air::<THESIS, _>(time, flow);
+        if let Some(axis) = flow.axis.filter(|_| !THESIS) {
+            // In the plane of the axis and the velocity, whose angle of attack has the sine of the length of what the axis has across.
+            let across = axis - ahead * axis.dot(ahead);
+            let lift = across * (air.lift * reciprocal_or_one(length(&across)));
+            return (lift - ahead * air.drag) * self.density::<false, _>(flow);
+        }
         let lift = air.lift * lift_fade_over_cosine(*cos_gamma);
         let (sin_bank, cos_bank) = self.sin_cos_bank::<THESIS, _>(time, flow);
         let (lift_left, lift_up) = (lift * sin_bank, lift * cos_bank);
@@ -377,12 +402,21 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn flow<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
         let local = self.local_air::<THESIS, _>(time, || state.position);
-        self.flow_in::<THESIS, _>(local, state)
+        self.flow_in::<THESIS, _>(time, local, state)
     }
 
     /// The air that meets a vehicle in a state, whose density and speed of sound are given where they depend on more than the altitude.
     #[inline(always)]
-    fn flow_in<const THESIS: bool, S: Over<P>>(&self, local: Option<(S, S)>, state: &State<S>) -> Flow<S> {
+    fn flow_in<const THESIS: bool, S: Over<P>>(&self, time: S, local: Option<(S, S)>, state: &State<S>) -> Flow<S> {
+        let mut flow = self.flow_without_axis::<THESIS, _>(local, state);
+        if !THESIS && self.by_axis {
+            flow.axis = Some(self.axis(time, state, &flow));
+        }
+        flow
+    }
+
+    #[inline(always)]
+    fn flow_without_axis<const THESIS: bool, S: Over<P>>(&self, local: Option<(S, S)>, state: &State<S>) -> Flow<S> {
         let State { position, velocity, .. } = state;
         let altitude = self.models.planet.shape.altitude(position);
         match self.wind::<THESIS, _>(altitude) {
@@ -444,7 +478,7 @@ impl<P: Scalar> Forces<P> {
         });
         let density_and_mach = known.map(|(density, sound)| (density, directions.speed * sound.recip()));
         let mass_ratio = if THESIS { None } else { self.mass_ratio(mass) };
-        Flow { altitude, directions, ground_speed, density_and_mach, mass_ratio }
+        Flow { altitude, directions, ground_speed, density_and_mach, mass_ratio, axis: None }
     }
 
     /// The wind at an altitude, m, to the east and to the north, m/s.
@@ -528,9 +562,21 @@ impl<P: Scalar> Forces<P> {
         flow.angle(&self.models.control.bank_angle, self.mode.of(Switch::BankAngle), time) + self.parameters.bank_angle
     }
 
-    /// α, rad.
+    /// α, rad: as it is commanded, or the angle between the axis and the velocity relative to the air.
     #[inline(always)]
     fn angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
+        match &flow.axis {
+            None => self.commanded_angle_of_attack(time, flow),
+            Some(axis) => {
+                let ahead = &flow.directions.ahead;
+                length(&axis.cross(ahead)).atan2(axis.dot(ahead))
+            }
+        }
+    }
+
+    /// α, rad, as it is commanded.
+    #[inline(always)]
+    fn commanded_angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
         flow.angle(&self.models.control.angle_of_attack, self.mode.of(Switch::AngleOfAttack), time)
     }
 }
@@ -546,6 +592,7 @@ impl Models {
                 wind: Wind::Still,
                 aerodynamics: Aerodynamics::Constant { .. },
                 control: Control { bank_angle: Command::Constant(_), angle_of_attack: Command::Constant(_) },
+                steering: _,
                 heating: None,
             }
         )
@@ -554,7 +601,10 @@ impl Models {
     /// Whether coefficients or angles depend on the Mach number.
     fn depend_on_mach(&self) -> bool {
         let Control { bank_angle, angle_of_attack } = &self.control;
-        self.aerodynamics.is_by_mach() || bank_angle.is_by_mach() || angle_of_attack.is_by_mach()
+        self.aerodynamics.is_by_mach()
+            || bank_angle.is_by_mach()
+            || angle_of_attack.is_by_mach()
+            || self.steering.is_by_mach()
     }
 }
 
@@ -630,17 +680,26 @@ impl Forces {
         let rise = position.dot(velocity) / radius;
         let inertial = velocity + Vector3::z().cross(position) * self.models.planet.rotation_rate;
         let level_squared = inertial.norm_squared() - rise * rise;
-        let thrust = self.thrust(time, state).map_or(0.0, |thrust| thrust.norm());
+        let thrust = self.push_on(time, state, flow).map_or(0.0, |thrust| thrust.norm());
         let fall = (self.models.planet.point_gravity(radius) - level_squared / radius + thrust).max(0.0);
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + 2.0 * fall * depth).sqrt();
         if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) }
     }
 
+    /// The thrust over the mass, m/s², if there is one.
+    fn push_on(&self, time: f64, state: &State<f64>, flow: &Flow<f64>) -> Option<Vector3<f64>> {
+        self.burn.as_ref()?;
+        let aerodynamic = self.aerodynamic::<false, _>(time, flow);
+        Some(self.push(time, state, flow, &aerodynamic)?.acceleration)
+    }
+
     /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.
     pub(crate) fn power(&self, time: f64, state: &State<f64>) -> Power {
-        let aerodynamic = self.aerodynamic::<false, _>(time, &self.flow::<false, _>(time, state));
-        let thrust = self.thrust(time, state).map_or(0.0, |thrust| thrust.dot(&state.velocity));
+        let flow = self.flow::<false, _>(time, state);
+        let aerodynamic = self.aerodynamic::<false, _>(time, &flow);
+        let push = self.push(time, state, &flow, &aerodynamic);
+        let thrust = push.map_or(0.0, |push| push.acceleration.dot(&state.velocity));
         Power { drag: -aerodynamic.dot(&state.velocity), thrust }
     }
 
@@ -649,41 +708,6 @@ impl Forces {
         dynamic_pressure * self.area_over_mass * self.parameters.drag_coefficient
     }
 }
-
-/// A direction in a state at a time, s, of length 1; of length 0 where there is none, and shorter than 1 near the vertical where there is
-/// none in vertical flight.
-#[inline(always)]
-pub(crate) fn along<S: Scalar>(axis: ThrustAxis, planet: &Planet, time: S, state: &PlanetFixed<S>) -> Vector3<S> {
-    let Directions { up, ahead, left, cos_gamma, .. } = Directions::of(&state.position, &state.velocity);
-    match axis {
-        ThrustAxis::Velocity => ahead,
-        ThrustAxis::Radial => up,
-        ThrustAxis::Normal => left * lift_fade_over_cosine(cos_gamma),
-        ThrustAxis::Horizontal => left.cross(&up) * lift_fade_over_cosine(cos_gamma),
-        ThrustAxis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
-    }
-}
-
-/// A direction in a state at a time, s, of length 1, if there is one.
-pub(crate) fn direction(
-    axis: ThrustAxis,
-    planet: &Planet,
-    time: f64,
-    state: &PlanetFixed<f64>,
-) -> Option<Vector3<f64>> {
-    let Directions { up, ahead, left, .. } = Directions::of(&state.position, &state.velocity);
-    match axis {
-        ThrustAxis::Velocity => ahead,
-        ThrustAxis::Radial => up,
-        ThrustAxis::Normal => left,
-        ThrustAxis::Horizontal => left.cross(&up),
-        ThrustAxis::Inertial(direction) => turned(&direction, time * planet.rotation_rate),
-    }
-    .try_normalize(NO_DIRECTION)
-}
-
-/// A part of a unit vector that is a rounding.
-const NO_DIRECTION: f64 = 1e-9;
 
 /// A state that moves along its rate of change: the derivative part of what is computed from it is a rate per second.
 pub fn moving<const N: usize>(state: &[f64; N], derivative: &[f64; N]) -> [Dual64; N] {

@@ -6,7 +6,7 @@ pub use gravity::{Gravity, Zonal};
 
 pub(crate) use gravity::Pull;
 
-use crate::scalar::{Scalar, length};
+use crate::scalar::{Scalar, length, reciprocal_or_one};
 use nalgebra::Vector3;
 
 /// The surface from which altitudes are measured.
@@ -50,6 +50,15 @@ impl Shape {
                 radius - radius * stretched.recip() * polar_radius
             }
         }
+    }
+
+    /// The outward normal of the surface where the radius vector of a planet-fixed position, m, meets it, of length 1.
+    #[inline(always)]
+    pub fn normal<S: Scalar>(&self, position: &Vector3<S>) -> Vector3<S> {
+        let (equatorial_radius, polar_radius) = self.semi_axes();
+        let ratio = equatorial_radius / polar_radius;
+        let gradient = Vector3::new(position.x, position.y, position.z * (ratio * ratio));
+        gradient * reciprocal_or_one(length(&gradient))
     }
 
     /// The distance from the centre to the surface at a geocentric latitude, in m.

@@ -9,7 +9,7 @@ pub use bounds::Bound;
 
 pub(crate) use dispatch::{ForFormulation, FormulationIn, StateLayout, dispatch};
 pub(crate) use numbers::Numbers;
-pub(crate) use phase::Phase;
+pub(crate) use phase::{Change, Phase};
 
 use bounds::out_of_bounds;
 
@@ -19,12 +19,14 @@ use std::sync::Arc;
 use crate::atmosphere::Atmosphere;
 use crate::control::{Command, Control};
 use crate::coordinates::{GreatCircle, PlanetFixed};
-use crate::event::{Condition, Direction, ThrustCommand, Event, Quantity, Trigger};
+use crate::event::{Condition, Direction, Event, Quantity, ThrustCommand, Trigger};
 use crate::heating::{Heating, Stagnation};
 use crate::motion::{Forces, Models, Parameters, State};
 use crate::number_text::apart;
+use crate::part::{Engine, Part, ThrustProfile};
 use crate::planet::Planet;
 use crate::scalar::Scalar;
+use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Vehicle};
 use crate::wind::Wind;
 
@@ -95,8 +97,12 @@ pub struct Case {
     pub wind: Wind,
     /// Mass, reference area, aerodynamics and nose radius.
     pub vehicle: Vehicle,
+    /// The parts, if the vehicle is made of any: its mass is theirs then.
+    pub parts: Vec<Part>,
     /// Bank angle and angle of attack.
     pub control: Control,
+    /// Where the axis of a vehicle with parts points.
+    pub steering: Steering,
     /// The correlations of the heating; none where no heat flux is wanted.
     pub heating: Option<Heating>,
     /// The events, in the order of the request; each happens at most once.
@@ -106,11 +112,35 @@ pub struct Case {
     pub start_time: f64,
     /// The state at the start.
     pub initial_state: PlanetFixed<f64>,
+    /// Whether the vehicle is held where it starts, at rest, until an event lets it lift off.
+    pub hold_down: bool,
+    /// The place from which ranges are measured, and the direction in which they grow as a velocity of any size; none where both are those of
+    /// the initial state.
+    pub origin: Option<PlanetFixed<f64>>,
     /// The conditions that end the flight.
     pub stop: Stop,
     /// The settings of the integration.
     pub solver: Solver,
+    /// Those that separations set free. Of each the parts, the initial state and the start are those of the separation.
+    pub bodies: Vec<BodyCase>,
 }
+
+/// The case of what leaves a vehicle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyCase {
+    /// The case, as if it began with that of the vehicle.
+    pub case: Case,
+    /// When the flight ends at the latest, s, on the clock of the vehicle; none for [`BodyCase::TIME`] after the separation.
+    pub stop_time: Option<f64>,
+}
+
+impl BodyCase {
+    /// How long a body flies at the most, where nothing else is said, s.
+    pub const TIME: f64 = 10_000.0;
+}
+
+/// The most bodies that a flight may set free, those that they set free themselves included.
+pub const MOST_BODIES: usize = 64;
 
 /// A case that was checked, and can be flown.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,6 +264,91 @@ pub enum Fault {
         /// Its place in the [`Case`].
         field: String,
     },
+    /// Something names a part without an engine, or one that is not there.
+    #[error("must be the name of a part with an engine")]
+    NoSuchEngine {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// Something names a part that is not there.
+    #[error("must be the name of a part")]
+    NoSuchPart {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// A part that is separated twice.
+    #[error("must be a part that no other event separates: event {event} does")]
+    SeparatedTwice {
+        /// Its place in the [`Case`].
+        field: String,
+        /// The place of the other event in the list.
+        event: usize,
+    },
+    /// An engine that is lit more often than it is shut down.
+    #[error("must be a part that is not lit: event {event} lights it, and no event shuts it down")]
+    LitTwice {
+        /// Its place in the [`Case`].
+        field: String,
+        /// The place of the other event in the list.
+        event: usize,
+    },
+    /// Propellant without an engine.
+    #[error("must be 0: the part has no engine to burn it")]
+    PropellantWithoutEngine {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// A part that weighs nothing.
+    #[error("must be greater than 0: the part has no propellant, and would have no mass")]
+    PartWithoutMass {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// Events separate every part.
+    #[error("must leave a part to the vehicle: with these, events separate all of them")]
+    NothingRemains {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// Thrust entries that do not ascend from 0, or less than two.
+    #[error("must be two numbers or more, ascending from 0 s")]
+    ThrustTimes {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// An engine whose thrust depends on the pressure of the air, under an atmosphere that has none.
+    #[error(
+        "requires the pressure of the air: the atmosphere must be standard, us76 or nrlmsise00, or a table with pressure"
+    )]
+    NoPressure {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// Parts under the thesis's equations.
+    #[error(
+        "must be cartesian for a vehicle with parts: the spherical equations are singular in vertical flight and at rest"
+    )]
+    SphericalParts,
+    /// A mass or a thrust that the parts already say.
+    #[error("must be omitted: the vehicle has parts, whose masses and engines say it")]
+    SaidByParts {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// More bodies than a flight may set free.
+    #[error("must not set free more than {MOST_BODIES} bodies in all")]
+    TooManyBodies {
+        /// Its place in the [`Case`].
+        field: String,
+    },
+    /// Something is wrong with the case of a body.
+    #[error("{fault}")]
+    OfBody {
+        /// The place of the separation in the [`Case`].
+        field: String,
+        /// What is wrong with it.
+        fault: Box<Fault>,
+    },
     /// Heating without a nose.
     #[error("is required for heating: the heat flux at the stagnation point depends on it")]
     NoNoseRadius,
@@ -272,6 +387,7 @@ impl Scenario {
         faults.extend(case.mach_faults());
         faults.extend(case.condition_faults());
         faults.extend(case.effect_faults());
+        faults.extend(case.part_faults());
         faults.extend((case.heating.is_some() && case.vehicle.nose_radius.is_none()).then_some(Fault::NoNoseRadius));
         if faults.is_empty() {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
@@ -282,11 +398,21 @@ impl Scenario {
                 faults.push(Fault::InfiniteAcceleration);
             }
         }
+        if case.count_of_bodies() > MOST_BODIES {
+            let last = case.events.iter().rposition(|event| !event.then.separate.is_empty()).unwrap_or_default();
+            faults.push(Fault::TooManyBodies { field: format!("events.{last}.then.separate") });
+        }
         if !faults.is_empty() {
             return Err(ScenarioError(faults));
         }
+        Ok(Self::unchecked(case))
+    }
+
+    /// The case of a body that is set free, which was checked as far as it was known.
+    pub(crate) fn unchecked(case: Case) -> Self {
+        let altitude = case.planet.shape.altitude(&case.initial_state.position);
         let starts_on_stop_altitude = altitude <= case.stop.altitude + ON_STOP_ALTITUDE;
-        Ok(Self { case, starts_on_stop_altitude })
+        Self { case, starts_on_stop_altitude }
     }
 
     /// The case.
@@ -318,13 +444,18 @@ impl Case {
             density_factor: 1.0,
             wind: Wind::Still,
             vehicle,
+            parts: Vec::new(),
             control: Control::banked(0.0),
+            steering: Steering::default(),
             heating: None,
             events: Vec::new(),
             start_time: 0.0,
             initial_state,
+            hold_down: false,
+            origin: None,
             stop: Stop::default(),
             solver: Solver::default(),
+            bodies: Vec::new(),
         }
     }
 
@@ -369,6 +500,8 @@ impl Case {
         share(&mut self.wind, &other.wind);
         share(&mut self.vehicle, &other.vehicle);
         share(&mut self.control, &other.control);
+        share(&mut self.steering, &other.steering);
+        share(&mut self.bodies, &other.bodies);
         for (own, other) in self.events.iter_mut().zip(&other.events) {
             share(own, other);
         }
@@ -389,9 +522,20 @@ impl Case {
         }
     }
 
+    /// From where ranges are measured.
+    pub fn track_start(&self) -> &PlanetFixed<f64> {
+        self.origin.as_ref().unwrap_or(&self.initial_state)
+    }
+
     /// Whether a thrust burns propellant.
     fn burns_propellant(&self) -> bool {
-        self.events.iter().filter_map(|event| event.then.thrust()).any(|thrust| thrust.specific_impulse.is_some())
+        let has_engine = self.parts.iter().any(|part| part.engine.is_some());
+        has_engine
+            || self
+                .events
+                .iter()
+                .filter_map(|event| event.then.thrust())
+                .any(|thrust| thrust.specific_impulse.is_some())
     }
 
     /// Whether anything is watched on the way, beside the stop altitude and the formulas of the models.
@@ -433,6 +577,7 @@ impl Case {
             wind: self.wind.clone(),
             aerodynamics,
             control: Control { bank_angle, angle_of_attack },
+            steering: Steering::default(),
             heating: self
                 .heating
                 .zip(vehicle.nose_radius)
@@ -486,16 +631,102 @@ impl Case {
         faults
     }
 
+    /// What is wrong with the parts, and with what events do to them.
+    fn part_faults(&self) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (index, part) in self.parts.iter().enumerate() {
+            let place = format!("vehicle.parts.{index}");
+            if part.engine.is_none() && part.propellant > 0.0 {
+                faults.push(Fault::PropellantWithoutEngine { field: format!("{place}.propellant") });
+            }
+            if part.mass() <= 0.0 {
+                faults.push(Fault::PartWithoutMass { field: format!("{place}.dry_mass") });
+            }
+            let Some(Engine { thrust, exit_area, .. }) = &part.engine else { continue };
+            if *exit_area > 0.0 && !self.atmosphere.has_pressure() {
+                faults.push(Fault::NoPressure { field: format!("{place}.engine.exit_area") });
+            }
+            if let ThrustProfile::Table(entries) = thrust {
+                let ascends = entries.windows(2).all(|pair| pair[0].time < pair[1].time);
+                let starts_at_0 = entries.first().is_some_and(|first| first.time == 0.0);
+                if entries.len() < 2 || !ascends || !starts_at_0 {
+                    faults.push(Fault::ThrustTimes { field: format!("{place}.engine.thrust.time") });
+                }
+            }
+        }
+        if !self.parts.is_empty() && self.solver.equations == Equations::Spherical {
+            faults.push(Fault::SphericalParts);
+        }
+        let [mut separated, mut lit] = [vec![None; self.parts.len()], vec![None; self.parts.len()]];
+        let is_shut_down = |part: usize| self.events.iter().any(|event| event.then.shut_down.contains(&part));
+        for (index, Event { then, .. }) in self.events.iter().enumerate() {
+            let place = format!("events.{index}.then");
+            if !self.parts.is_empty() {
+                let said = [("mass", then.mass.is_some()), ("thrust", then.thrust.is_some())];
+                let said = said.into_iter().filter(|(_, is_said)| *is_said);
+                faults.extend(said.map(|(name, _)| Fault::SaidByParts { field: format!("{place}.{name}") }));
+            }
+            let throttled = then.throttle.iter().map(|throttle| throttle.part).enumerate();
+            let throttled = throttled.map(|(at, part)| (format!("{place}.throttle.{at}"), part));
+            let shut_down = then.shut_down.iter().copied().enumerate();
+            let shut_down = shut_down.map(|(at, part)| (format!("{place}.shut_down.{at}"), part));
+            let ignited = then.ignite.iter().copied().enumerate();
+            let ignited = ignited.map(|(at, part)| (format!("{place}.ignite.{at}"), part));
+            let has_engine = |part: usize| self.parts.get(part).is_some_and(|part| part.engine.is_some());
+            let unknown = throttled.chain(shut_down).chain(ignited.clone()).filter(|(_, part)| !has_engine(*part));
+            faults.extend(unknown.map(|(field, _)| Fault::NoSuchEngine { field }));
+            for (field, part) in ignited.filter(|(_, part)| has_engine(*part)) {
+                match lit[part].replace(index) {
+                    Some(event) if !is_shut_down(part) => faults.push(Fault::LitTwice { field, event }),
+                    _ => {}
+                }
+            }
+            for (at, separation) in then.separate.iter().enumerate() {
+                for (of_body, part) in separation.parts.iter().enumerate() {
+                    let field = format!("{place}.separate.{at}.parts.{of_body}");
+                    match separated.get_mut(*part).map(|separated| separated.replace(index)) {
+                        None => faults.push(Fault::NoSuchPart { field }),
+                        Some(Some(event)) => faults.push(Fault::SeparatedTwice { field, event }),
+                        Some(None) if separated.iter().all(Option::is_some) => {
+                            faults.push(Fault::NothingRemains { field: format!("{place}.separate.{at}.parts") });
+                        }
+                        Some(None) => {}
+                    }
+                }
+                let Some(body) = self.bodies.get(separation.body) else { continue };
+                let of_body = |fault| Fault::OfBody { field: format!("{place}.separate.{at}"), fault: Box::new(fault) };
+                faults.extend(body.case.faults_of_body().into_iter().map(of_body));
+            }
+        }
+        faults
+    }
+
+    /// What is wrong with the case of a body, whose state is not known yet.
+    fn faults_of_body(&self) -> Vec<Fault> {
+        let mut faults = out_of_bounds(self);
+        faults.extend(self.mach_faults());
+        faults.extend(self.condition_faults());
+        faults.extend(self.effect_faults());
+        faults.extend(self.part_faults());
+        faults
+    }
+
+    /// How many bodies it may set free, those of bodies included.
+    pub fn count_of_bodies(&self) -> usize {
+        self.bodies.iter().map(|body| 1 + body.case.count_of_bodies()).sum()
+    }
+
     /// What needs a Mach number where there is none.
     fn mach_faults(&self) -> Vec<Fault> {
         if self.atmosphere.has_speed_of_sound() {
             return Vec::new();
         }
         let Control { bank_angle, angle_of_attack } = &self.control;
-        let needs: [(Cow<'static, str>, bool); 3] = [
+        let needs: [(Cow<'static, str>, bool); 4] = [
             ("vehicle.aerodynamics.type".into(), self.vehicle.aerodynamics.is_by_mach()),
             ("control.bank_angle.against".into(), bank_angle.is_by_mach()),
             ("control.angle_of_attack.against".into(), angle_of_attack.is_by_mach()),
+            ("control.steering".into(), self.steering.is_by_mach()),
         ];
         let conditions = self
             .conditions()
@@ -504,7 +735,11 @@ impl Case {
             let by_mach = event.then.aerodynamics.as_ref().is_some_and(Aerodynamics::is_by_mach);
             (format!("events.{index}.then.aerodynamics.type").into(), by_mach)
         });
-        let needs = needs.into_iter().chain(conditions).chain(effects);
+        let steers = self.events.iter().enumerate().map(|(index, event)| {
+            let by_mach = event.then.steer.as_ref().is_some_and(Steering::is_by_mach);
+            (format!("events.{index}.then.steer").into(), by_mach)
+        });
+        let needs = needs.into_iter().chain(conditions).chain(effects).chain(steers);
         needs.filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()
     }
 
@@ -520,7 +755,7 @@ impl Case {
             let field = format!("{place}.quantity");
             match condition.quantity {
                 quantity if quantity.is_of_heating() && self.heating.is_none() => Some(Fault::NoHeating { field }),
-                Quantity::Downrange if !GreatCircle::of(&self.initial_state).has_heading() => {
+                Quantity::Downrange if !GreatCircle::of(self.track_start()).has_heading() => {
                     Some(Fault::NoHeading { field })
                 }
                 _ => None,
@@ -532,6 +767,9 @@ impl Case {
             }
             Trigger::After { event, .. } if self.waits_in_a_circle(event) => {
                 Some(Fault::NeverHappens { field: format!("{place}.event") })
+            }
+            Trigger::AfterBurnout { part, .. } if self.parts.get(part).is_none_or(|part| part.engine.is_none()) => {
+                Some(Fault::NoSuchEngine { field: format!("{place}.burnout") })
             }
             _ => None,
         });

@@ -1,5 +1,6 @@
 //! Propagation of a scenario to its end: the trajectory, or the arrival alone.
 
+mod bodies;
 mod conditions;
 mod detector;
 mod flight;
@@ -9,6 +10,7 @@ mod peak_tracker;
 mod step_view;
 mod stop_altitude;
 
+pub use bodies::{BodyError, Flights, SeparatedBody, simulate_with_bodies};
 pub use lanes::arrivals;
 
 use crate::integrate::{AnyStep, Step};
@@ -16,7 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::motion::{Formulation, Singularity, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{ForFormulation, FormulationIn, Phase, Scenario, dispatch};
-use crate::trajectory::{Arrival, Flown, StoredStep, Trajectory};
+use crate::trajectory::{Arrival, Flown, StoredStep, Trajectory, Warning};
 use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
@@ -82,6 +84,15 @@ pub enum SimulationError {
         /// Along the radius vector, m.
         altitude: f64,
     },
+    /// A load limit throttles several engines of which one has a profile by time: the share of each in the propellant that is burnt is not known.
+    #[error(
+        "from t = {} s on a load limit throttles several engines, and the thrust of one changes by time: the propellant that each burns is not \
+         known", NumberText(*.time)
+    )]
+    UnknownShares {
+        /// The instant reached, s.
+        time: f64,
+    },
     /// The steps that the flight keeps have no room in memory.
     #[error("no memory for the steps after t = {} s", NumberText(*.time))]
     NoRoom {
@@ -112,6 +123,9 @@ fn name(switch: Switch) -> &'static str {
         Switch::BankAngle => "the schedule of the bank angle",
         Switch::AngleOfAttack => "the schedule of the angle of attack",
         Switch::Radiation => "the radiation of the air",
+        Switch::Pitch => "the schedule of the pitch",
+        Switch::Yaw => "the schedule of the yaw",
+        Switch::LoadLimit => "the load limit",
     }
 }
 
@@ -187,13 +201,15 @@ impl ForFormulation for Record<'_> {
         })?;
         let end = flight.instant();
         peak_tracker.end(flight.motion.forces(), &end)?;
+        let never_lifted = flight.is_held().then_some(Warning::NeverLifted { time: end.time });
         let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
-        let FlightLog { mut phases, event_records, warnings: others } = flight.log;
+        let FlightLog { mut phases, event_records, separations, warnings: others } = flight.log;
         phases.insert(0, Phase::first(case));
         warnings.extend(others);
+        warnings.extend(never_lifted);
         Ok(Trajectory::new(
             case.clone(),
-            Flown { start, steps, phases, event_records, end, arrival, peaks, peaks_of_phases, warnings },
+            Flown { start, steps, phases, event_records, separations, end, arrival, peaks, peaks_of_phases, warnings },
         ))
     }
 }

@@ -168,6 +168,22 @@ pub enum Warning {
         /// s.
         time: f64,
     },
+    /// An engine was to be lit that burns already, or that has left.
+    NotLit {
+        /// The number of the event that was to light it.
+        event: usize,
+        /// The place of its part in the list.
+        part: usize,
+        /// Whether it has not left.
+        is_there: bool,
+        /// s.
+        time: f64,
+    },
+    /// The vehicle was held on the ground until its flight ended.
+    NeverLifted {
+        /// s.
+        time: f64,
+    },
     /// A parachute was to be cut off that is not deployed.
     NotDeployed {
         /// The number of the event that was to cut it off.
@@ -190,6 +206,8 @@ impl Warning {
             | Self::PropellantSpent { time }
             | Self::NoDirection { time, .. }
             | Self::ThrustWithoutDirection { time, .. }
+            | Self::NotLit { time, .. }
+            | Self::NeverLifted { time }
             | Self::NotDeployed { time, .. } => time,
         }
     }
@@ -239,6 +257,12 @@ pub struct FlightPoint {
     pub mass: f64,
     /// The magnitude of the thrust, N; 0 where none is on.
     pub thrust: f64,
+    /// The share of the thrust of all engines that are lit, in vacuum, that throttles and the load limit leave; 0 where none is lit.
+    pub throttle: f64,
+    /// Of the axis of a vehicle with parts above the plane normal to the radius vector, rad.
+    pub pitch: Option<f64>,
+    /// The number of the phase of the flight.
+    pub(crate) phase: usize,
     /// Into the stagnation point since the start, J/m², where heating is asked for.
     pub heat_load: Option<f64>,
     /// At which the wall radiates what it gets, K.
@@ -313,6 +337,23 @@ pub(crate) struct EventRecord {
     pub(crate) after: Instant,
 }
 
+/// Parts that left the vehicle.
+#[derive(Clone, Debug)]
+pub(crate) struct SeparationRecord {
+    /// The place of the event in the list.
+    pub(crate) event: usize,
+    /// The place of the separation in its effect.
+    pub(crate) place: usize,
+    /// The place of the case of the body.
+    pub(crate) body: usize,
+    /// s.
+    pub(crate) time: f64,
+    /// Of the body, after its push.
+    pub(crate) state: PlanetFixed<f64>,
+    /// What is left in each part, of all of its count together, kg.
+    pub(crate) propellant: Vec<f64>,
+}
+
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
@@ -347,6 +388,7 @@ pub(crate) struct Flown {
     /// One more than there were events that changed anything.
     pub(crate) phases: Vec<Phase>,
     pub(crate) event_records: Vec<EventRecord>,
+    pub(crate) separations: Vec<SeparationRecord>,
     /// Into which it would go on.
     pub(crate) end: Instant,
     pub(crate) arrival: Arrival,
@@ -375,7 +417,7 @@ impl InsideStep<'_> {
 
 impl Trajectory {
     pub(crate) fn new(case: Case, flown: Flown) -> Self {
-        let origin = Origin::of(&case.initial_state);
+        let origin = Origin::of(case.track_start());
         let mut flight = Self { case, flown, origin, ground_track: OnceLock::new() };
         let ranges = flight.outside_ranges();
         flight.flown.warnings.extend(ranges);
@@ -471,6 +513,12 @@ impl Trajectory {
             after: self.point_of(&record.after),
         };
         self.flown.event_records.iter().map(point)
+    }
+
+    /// The propellant of a part at a point of the flight, of all of its count together, kg; none once it has left.
+    pub fn propellant(&self, point: &FlightPoint, part: usize) -> Option<f64> {
+        let phase = &self.flown.phases[point.phase];
+        phase.parts.get(part)?.is_there.then(|| phase.propellant(part, point.time, point.mass))
     }
 
     /// The bytes that its steps take in memory.
@@ -599,7 +647,8 @@ impl Trajectory {
     }
 
     fn point(&self, forces: &Forces, phase: usize, time: f64, state: &State<f64>) -> FlightPoint {
-        self.point_from(&self.origin, forces, &self.flown.phases[phase], time, state)
+        let point = self.point_from(&self.origin, forces, &self.flown.phases[phase], time, state);
+        FlightPoint { phase, ..point }
     }
 
     /// The point of a state near the flight, which may have set out from another origin, and fly under other forces in another phase; its
@@ -632,6 +681,9 @@ impl Trajectory {
         let [downrange, crossrange] = [0, 1].map(|part| range.map(|range| range[part] * sphere));
         let loads = forces.loads(time, state);
         let wall = forces.heating().zip(loads.heat_flux);
+        let mass = state.mass.unwrap_or(phase.vehicle.mass);
+        let [thrust, throttle] = forces.thrust_and_throttle(time, state, mass);
+        let has_parts = !phase.parts.is_empty();
         FlightPoint {
             time,
             flight_path,
@@ -651,8 +703,11 @@ impl Trajectory {
             // By the place itself, from which it is exactly 0 away.
             ground_range: from.cross(&state.position).norm().atan2(from.dot(&state.position)) * sphere,
             ground_distance: length * sphere,
-            mass: state.mass.unwrap_or(phase.vehicle.mass),
-            thrust: phase.thrust.map_or(0.0, |thrust| thrust.force.abs()),
+            mass,
+            thrust: phase.thrust.map_or(thrust, |thrust| thrust.force.abs()),
+            throttle: if has_parts { throttle * phase.throttle() } else { throttle },
+            pitch: has_parts.then(|| forces.pitch(time, state)),
+            phase: 0,
             heat_load: state.heat_load.filter(|_| forces.heating().is_some()),
             wall_temperature: wall.map(|(nose, flux)| nose.wall_temperature(flux.total())),
         }

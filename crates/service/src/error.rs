@@ -167,6 +167,7 @@ impl ApiError {
     fn class(&self) -> (StatusCode, &'static str, &'static str) {
         use SimulationError::{
             Chatter, Interrupted, NoDirection, NoRoom, NothingLeft, Overflow, Singularity, StepLimit, TooStiff,
+            UnknownShares,
         };
         use StatusCode as Status;
         match self {
@@ -210,6 +211,9 @@ impl ApiError {
                 NothingLeft { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/no-mass-left", "No mass left"),
                 NoDirection { .. } => {
                     (Status::UNPROCESSABLE_ENTITY, "/problems/no-direction", "Thrust without direction")
+                }
+                UnknownShares { .. } => {
+                    (Status::UNPROCESSABLE_ENTITY, "/problems/unknown-shares", "Unknown shares of propellant")
                 }
                 Overflow { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/overflow", "Loads out of range"),
                 NoRoom { .. } => (Status::SERVICE_UNAVAILABLE, "/problems/busy", "Busy"),

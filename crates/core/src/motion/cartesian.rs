@@ -42,9 +42,9 @@ impl<P: Scalar> Cartesian<P> {
     #[inline(always)]
     fn rates<S: Over<P>, const N: usize>(&self, time: S, numbers: &[S; N]) -> [S; N] {
         let state = State::of(PlanetFixed::from(coordinates(numbers)), numbers);
-        let (acceleration, heat_flux) = self.0.acceleration_and_heat_flux(time, &state);
+        let (acceleration, mass_rate, heat_flux) = self.0.acceleration_and_rates(time, &state);
         let rates = PlanetFixed { position: state.velocity, velocity: acceleration };
-        let more = State { mass: Some(self.0.mass_rate()), heat_load: Some(heat_flux), ..state };
+        let more = State { mass: Some(mass_rate), heat_load: Some(heat_flux), ..state };
         more.numbers(rates.into())
     }
 }

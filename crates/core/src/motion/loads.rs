@@ -100,8 +100,15 @@ impl<P: Scalar> Forces<P> {
 
     /// The force that is not gravity over the weight at standard gravity.
     fn load_factor<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>, dynamic_pressure: S) -> S {
-        if let Some(thrust) = self.thrust(time, state) {
-            return length(&(self.aerodynamic::<false, _>(time, flow) + thrust)) * STANDARD_GRAVITY.recip();
+        if self.held {
+            // What holds it carries it.
+            return length(&self.fall::<false, _>(state, flow)) * STANDARD_GRAVITY.recip();
+        }
+        if self.burn.is_some() {
+            let aerodynamic = self.aerodynamic::<false, _>(time, flow);
+            let push = self.push(time, state, flow, &aerodynamic);
+            let felt = push.map_or(aerodynamic, |push| aerodynamic + push.acceleration);
+            return length(&felt) * STANDARD_GRAVITY.recip();
         }
         // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
         let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, flow);
@@ -126,7 +133,7 @@ impl<P: Scalar> Forces<P> {
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
     pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &State<S>) -> S {
         // Whatever the density is.
-        let left = self.flow_in::<false, _>(None, state).directions.left;
+        let left = self.flow_without_axis::<false, _>(None, state).directions.left;
         left.dot(&left)
     }
 }

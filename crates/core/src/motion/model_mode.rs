@@ -31,6 +31,12 @@ pub enum Switch {
     AngleOfAttack,
     /// The radiation of the air, at the entries of its table.
     Radiation,
+    /// The pitch of a steering program, at the corners of its schedule.
+    Pitch,
+    /// The yaw or azimuth of a steering program, at the corners of its schedule.
+    Yaw,
+    /// The thrust, where the load factor comes to its limit.
+    LoadLimit,
 }
 
 /// A table or a model of a given range, and the quantity by which something is looked up in it.
@@ -61,6 +67,8 @@ pub(crate) enum SwitchQuantity {
     AngleOfAttack,
     /// Relative to the air, m/s.
     AirSpeed,
+    /// Of the thrust over what the load limit leaves, over the mass, m/s².
+    LoadExcess,
 }
 
 /// Of every switch the segment of its formula that holds: 0 before the first boundary, 1 after it, and so on.
@@ -73,7 +81,7 @@ pub(crate) struct Chatter(pub(crate) Switch);
 
 impl Switch {
     /// All of them.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Atmosphere,
         Self::Wind,
         Self::Mach,
@@ -81,6 +89,9 @@ impl Switch {
         Self::BankAngle,
         Self::AngleOfAttack,
         Self::Radiation,
+        Self::Pitch,
+        Self::Yaw,
+        Self::LoadLimit,
     ];
 
     /// Whether it is the first and the last entry of a table.
@@ -102,7 +113,7 @@ impl SwitchQuantity {
     /// error, and far less than matters; s, m, m/s, a Mach number or rad.
     pub(crate) fn resolution(self) -> f64 {
         match self {
-            Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack => 1e-9,
+            Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack | Self::LoadExcess => 1e-9,
             Self::Along(Against::Altitude | Against::Speed) | Self::AirSpeed => 1e-6,
         }
     }
@@ -153,6 +164,12 @@ impl<P: Scalar> Forces<P> {
             Switch::Radiation => {
                 self.models.heating.as_ref().map(|heating| (SwitchQuantity::AirSpeed, heating.boundaries()))
             }
+            Switch::Pitch => self.models.steering.commands().and_then(|[pitch, _]| pitch.corners()).map(along),
+            Switch::Yaw => self.models.steering.commands().and_then(|[_, yaw]| yaw.corners()).map(along),
+            Switch::LoadLimit => {
+                let is_limited = self.burn.as_ref().is_some_and(|burn| burn.load_limit.is_some());
+                is_limited.then_some((SwitchQuantity::LoadExcess, &[0.0][..]))
+            }
         };
         boundaries.filter(|(_, boundaries)| !boundaries.is_empty())
     }
@@ -164,6 +181,7 @@ impl<P: Scalar> Forces<P> {
         }
         let flow = self.flow_where_mach_matters(time, state);
         Switch::ALL.map(|switch| match self.boundaries(switch) {
+            Some((SwitchQuantity::LoadExcess, _)) => self.load_excess(time, state, &self.flow::<false, _>(time, state)),
             Some((quantity, _)) => self.quantity_of(quantity, time, &flow),
             None => S::zero(),
         })
@@ -171,7 +189,7 @@ impl<P: Scalar> Forces<P> {
 
     /// The air that meets the vehicle, as far as angles and coefficients depend on it: without its density, where that takes a look-up of its own.
     pub(super) fn flow_where_mach_matters<S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
-        if self.by_mach { self.flow::<false, _>(time, state) } else { self.flow_in::<false, _>(None, state) }
+        if self.by_mach { self.flow::<false, _>(time, state) } else { self.flow_in::<false, _>(time, None, state) }
     }
 
     fn quantity_of<S: Over<P>>(&self, quantity: SwitchQuantity, time: S, flow: &Flow<S>) -> S {
@@ -179,6 +197,8 @@ impl<P: Scalar> Forces<P> {
             SwitchQuantity::Along(against) => flow.quantity(against, time),
             SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow),
             SwitchQuantity::AirSpeed => flow.directions.speed,
+            // It needs the density of the air.
+            SwitchQuantity::LoadExcess => S::zero(),
         }
     }
 }
@@ -270,11 +290,11 @@ impl Forces {
 
     /// The mode to which the forces of the present one lead.
     fn mode_ahead(&self, time: f64, state: &State<f64>) -> ModelMode {
-        let acceleration = self.acceleration(time, state);
+        let (acceleration, mass_rate, _) = self.acceleration_and_rates(time, state);
         let moving = State {
             position: state.position.zip_map(&state.velocity, Dual64::new),
             velocity: state.velocity.zip_map(&acceleration, Dual64::new),
-            mass: state.mass.map(|mass| Dual64::new(mass, self.mass_rate())),
+            mass: state.mass.map(|mass| Dual64::new(mass, mass_rate)),
             heat_load: None,
         };
         let readings = self.readings(Dual64::new(time, 1.0), &moving);

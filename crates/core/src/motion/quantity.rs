@@ -64,6 +64,7 @@ impl<P: Scalar> Forces<P> {
                 let level = (momentum.x * momentum.x + momentum.y * momentum.y).sqrt();
                 level.atan2(momentum.z)
             }
+            Quantity::UpwardAcceleration => self.upward_acceleration(*time, state),
             Quantity::HeatLoad => heat_load.unwrap_or_else(S::zero),
             Quantity::Downrange => {
                 track.along_and_across(position).map_or(S::zero(), |[along, _]| along * planet.equatorial_radius())

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Burn, Forces, State};
+use super::{Burn, Forces, State, ThrustDirection};
 use crate::propulsion::ThrustAxis;
 use crate::scalar::length;
 
@@ -20,16 +20,18 @@ impl Forces {
 
     /// Whether the thrust has no direction at rest.
     pub(crate) fn thrusts_by_velocity(&self) -> bool {
-        self.burn.as_ref().is_some_and(|burn| match burn.along {
-            ThrustAxis::Velocity | ThrustAxis::Horizontal | ThrustAxis::Normal => true,
-            ThrustAxis::Radial | ThrustAxis::Inertial(_) => false,
+        self.burn.as_ref().is_some_and(|burn| match burn.direction {
+            ThrustDirection::Axis(ThrustAxis::Velocity | ThrustAxis::Horizontal | ThrustAxis::Normal) => true,
+            // Steering by the velocity has a direction at rest.
+            ThrustDirection::Axis(ThrustAxis::Radial | ThrustAxis::Inertial(_)) | ThrustDirection::Steered => false,
         })
     }
 
     /// Whether a vehicle that the thrust brings to rest here stays at rest: the thrust acts against the velocity, and is as great as all
     /// other forces together on the vehicle at rest, so that it stops every motion as it begins.
     pub(crate) fn brakes_to_rest(&self, time: f64, state: &State<f64>) -> bool {
-        let brakes = |burn: &&Burn<f64>| burn.along == ThrustAxis::Velocity && burn.acceleration < 0.0;
+        const ALONG_VELOCITY: ThrustDirection = ThrustDirection::Axis(ThrustAxis::Velocity);
+        let brakes = |burn: &&Burn<f64>| burn.direction == ALONG_VELOCITY && burn.acceleration < 0.0;
         self.burn.as_ref().filter(brakes).is_some_and(|burn| {
             let still = State { velocity: Vector3::zeros(), ..*state };
             self.acceleration(time, &still).norm() <= -burn.acceleration * self.mass_ratio(state.mass).unwrap_or(1.0)

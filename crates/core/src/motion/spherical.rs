@@ -5,7 +5,7 @@ use num_dual::DualSVec64;
 
 use super::directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
 use super::state::coordinates;
-use super::{Forces, Formulation, Singularity, State};
+use super::{Forces, Formulation, Singularity, State, ThrustDirection};
 use crate::coordinates::FlightPath;
 use crate::integrate::{StepBounds, System, jacobian};
 use crate::planet::Pull;
@@ -50,7 +50,7 @@ impl<P: Scalar> Spherical<P> {
         let coordinates = coordinates(numbers);
         let state = State::of(FlightPath::from(coordinates).to_planet_fixed(), numbers);
         let rates = self.rates_by_any(time, &coordinates, state.mass);
-        let [mass, heat_load] = [self.0.mass_rate(), self.0.heat_flux_in(time, &state)].map(Some);
+        let [mass, heat_load] = [self.0.mass_rate(time, S::one()), self.0.heat_flux_in(time, &state)].map(Some);
         State { mass, heat_load, ..state }.numbers(rates)
     }
 }
@@ -200,7 +200,11 @@ impl<P: Scalar> Spherical<P> {
         let acceleration = self.0.mass_ratio(place.mass).unwrap_or_else(S::one) * burn.acceleration;
         let Velocity { sin_gamma, cos_gamma, .. } = *velocity;
         let faded_over_cos_gamma = || acceleration * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
-        Some(match burn.along {
+        let ThrustDirection::Axis(along) = burn.direction else {
+            // Parts are flown by the Cartesian equations alone.
+            return None;
+        };
+        Some(match along {
             ThrustAxis::Velocity => [acceleration, S::zero(), S::zero()],
             ThrustAxis::Radial => [acceleration * sin_gamma, acceleration * cos_gamma, S::zero()],
             ThrustAxis::Normal => [S::zero(), S::zero(), faded_over_cos_gamma()],

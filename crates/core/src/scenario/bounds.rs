@@ -7,11 +7,13 @@ use std::fmt;
 use super::{Case, Fault};
 use crate::atmosphere::Atmosphere;
 use crate::control::Command;
-use crate::event::{Condition, Effect, ThrustCommand, Quantity, Trigger};
+use crate::event::{Condition, Effect, Quantity, Throttle, ThrustCommand, Tilt, Trigger};
 use crate::heating::{Convective, Heating};
 use crate::number_text::{NumberText, apart};
 use crate::parachute::Parachute;
+use crate::part::{Engine, Part, ThrustEntry, ThrustProfile};
 use crate::planet::{Gravity, Zonal};
+use crate::steering::{Program, Steering};
 use crate::vehicle::Aerodynamics;
 use crate::wind::Wind;
 
@@ -75,6 +77,14 @@ impl Bound {
     pub const SIDEREAL_TIME: Self = Self::between(-1e9, 1e9);
     /// Thrusts, N.
     pub const FORCE: Self = Self::between(-1e12, 1e12);
+    /// Thrusts of engines, N.
+    pub const THRUST: Self = Self::between(0.0, 1e12);
+    /// Shares of a whole.
+    pub const SHARE: Self = Self::between(0.0, 1.0);
+    /// Load factors that throttle engines.
+    pub const LOAD_LIMIT: Self = Self::above(0.0, 1e6);
+    /// How many there are of a part.
+    pub const COUNT: Self = Self::between(1.0, 1e6);
     /// Specific impulses, s; that of light is 3.1e7.
     pub const SPECIFIC_IMPULSE: Self = Self::between(1e-3, 1e9);
     /// Solar fluxes F10.7, solar flux units: observed ones are from 63 to 380, and the model has no sense far from them.
@@ -185,11 +195,15 @@ pub(super) fn out_of_bounds(case: &Case) -> Vec<Fault> {
     }));
     let fixed = checks.into_iter().map(|(field, value, bound)| (Cow::Borrowed(field), value, bound));
     let fixed = fixed.chain(coefficients("vehicle", &vehicle.aerodynamics));
+    let parts = case.parts.iter().enumerate().flat_map(|(index, part)| part_numbers(index, part));
+    let fixed = fixed.chain(parts).chain(steering("control.steering", &case.steering));
     let triggers = case.triggers().map(|(place, trigger)| match *trigger {
         Trigger::Condition(Condition { quantity, value, .. }) => {
             (Cow::Owned(format!("{place}.value")), value, quantity.bound())
         }
-        Trigger::After { delay, .. } => (Cow::Owned(format!("{place}.delay")), delay, Bound::TIME),
+        Trigger::After { delay, .. } | Trigger::AfterBurnout { delay, .. } => {
+            (Cow::Owned(format!("{place}.delay")), delay, Bound::TIME)
+        }
     });
     let effects = case.events.iter().enumerate().flat_map(|(index, event)| numbers(index, &event.then));
     let fault =
@@ -234,9 +248,64 @@ fn numbers(index: usize, effect: &Effect) -> Vec<Check> {
         checks.push(of("deploy.inflation_time", inflation_time, Bound::TIME));
         checks.push(of("deploy.delay", delay, Bound::TIME));
     }
+    for (place, Throttle { value, .. }) in effect.throttle.iter().enumerate() {
+        checks.push(of(&format!("throttle.{place}"), *value, Bound::SHARE));
+    }
+    checks.extend(effect.load_limit.flatten().map(|limit| of("load_limit", limit, Bound::LOAD_LIMIT)));
+    if let Some(Tilt { angle, azimuth }) = effect.tilt {
+        checks.push(of("tilt.angle", angle, Bound::TURN));
+        checks.push(of("tilt.azimuth", azimuth, Bound::TURN));
+    }
+    for (place, separation) in effect.separate.iter().enumerate() {
+        let push = separation.push.map(|push| push.speed_change);
+        checks.extend(push.map(|push| of(&format!("separate.{place}.push.speed_change"), push, Bound::VELOCITY)));
+    }
+    checks.extend(effect.steer.iter().flat_map(|steer| steering(&format!("events.{index}.then.steer"), steer)));
     let aerodynamics = effect.aerodynamics.iter();
     checks.extend(aerodynamics.flat_map(|aerodynamics| coefficients(&format!("events.{index}.then"), aerodynamics)));
     checks
+}
+
+/// The numbers of a part.
+fn part_numbers(index: usize, part: &Part) -> Vec<Check> {
+    let of = |name: &str, value: f64, bound: Bound| (Cow::Owned(format!("vehicle.parts.{index}.{name}")), value, bound);
+    let Part { count, dry_mass, propellant, engine } = part;
+    let mut checks = vec![
+        of("count", f64::from(*count), Bound::COUNT),
+        of("dry_mass", *dry_mass, Bound::NON_NEGATIVE),
+        of("propellant", *propellant, Bound::NON_NEGATIVE),
+    ];
+    if let Some(Engine { thrust, specific_impulse, exit_area }) = engine {
+        checks.push(of("engine.specific_impulse", *specific_impulse, Bound::SPECIFIC_IMPULSE));
+        checks.push(of("engine.exit_area", *exit_area, Bound::NON_NEGATIVE));
+        match thrust {
+            ThrustProfile::Constant(thrust) => checks.push(of("engine.thrust.vacuum", *thrust, Bound::THRUST)),
+            ThrustProfile::Table(entries) => {
+                for (place, ThrustEntry { time, thrust }) in entries.iter().enumerate() {
+                    checks.push(of(&format!("engine.thrust.time.{place}"), *time, Bound::TIME));
+                    checks.push(of(&format!("engine.thrust.vacuum.{place}"), *thrust, Bound::THRUST));
+                }
+            }
+        }
+    }
+    checks
+}
+
+/// The numbers of a steering that are no tables.
+fn steering(place: &str, steering: &Steering) -> Vec<Check> {
+    let of = |name: &str, value: f64, bound: Bound| (Cow::Owned(format!("{place}.{name}")), value, bound);
+    match steering {
+        Steering::Vertical | Steering::Velocity => Vec::new(),
+        Steering::Program(Program { pitch, yaw, .. }) => {
+            let commands = [("pitch", pitch), ("yaw", yaw)].into_iter();
+            let numbers = commands.filter_map(|(name, command)| match command {
+                Command::Constant(angle) => Some(of(name, *angle, Bound::TURN)),
+                Command::Schedule(_) => None,
+            });
+            numbers.collect()
+        }
+        Steering::LinearTangent { a, b, .. } => vec![of("a", *a, Bound::FINITE), of("b", *b, Bound::FINITE)],
+    }
 }
 
 impl Quantity {
@@ -257,7 +326,7 @@ impl Quantity {
             Self::FlightPathAngle => Bound::QUARTER_TURN,
             Self::Inclination => Bound::HALF_TURN,
             Self::GroundRange => Bound::NON_NEGATIVE_DISTANCE,
-            Self::SpecificEnergy | Self::Deceleration => Bound::FINITE,
+            Self::SpecificEnergy | Self::Deceleration | Self::UpwardAcceleration => Bound::FINITE,
         }
     }
 }

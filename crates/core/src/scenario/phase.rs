@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use super::{Case, Numbers};
 use crate::event::{Effect, ThrustCommand};
-use crate::motion::{Burn, Forces};
+use crate::motion::{Burn, Forces, Models, ThrustDirection};
 use crate::parachute::{Canopies, Canopy, Parachute};
-use crate::propulsion::Thrust;
+use crate::part::{Engine, Part, ThrustEntry, ThrustPiece};
+use crate::propulsion::{STANDARD_GRAVITY, Thrust};
 use crate::scalar::Scalar;
+use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Vehicle};
 
 /// A part of the flight between two changes of the vehicle: its mass, thrust and parachutes from an instant on.
@@ -27,6 +29,118 @@ pub(crate) struct Phase<P = f64> {
     pub(crate) thrust_of: Option<usize>,
     /// The parachutes that are deployed, whether they are open yet or not.
     pub(crate) canopies: Vec<Canopy<P>>,
+    /// With what it begins.
+    pub(crate) cause: Change,
+    /// Whether the vehicle is held on the ground.
+    pub(crate) held: bool,
+    /// Those of the case, in its order.
+    pub(crate) parts: Vec<PartState<P>>,
+    /// The load factor that throttles the engines, m/s²: times standard gravity.
+    pub(crate) load_limit: Option<P>,
+    /// Where the axis of the vehicle points.
+    pub(crate) steering: Steering,
+    /// The event that steers so; none where it is the case.
+    pub(crate) steering_of: Option<usize>,
+}
+
+/// With what a phase begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// With the flight.
+    Start,
+    /// With the effect of an event, by its place in the list of the case.
+    Event(usize),
+    /// The propellant of a thrust is spent.
+    ThrustEnds,
+    /// A canopy begins to fill, or is full.
+    Inflation,
+    /// The thrust of a part, by its place in the list, goes on along the next straight piece of its profile.
+    NextPiece(usize),
+    /// A part, by its place in the list, has burnt out.
+    Burnout(usize),
+}
+
+/// A part of the vehicle in a phase; all of its count together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PartState<P = f64> {
+    /// Whether it has not been separated.
+    pub(crate) is_there: bool,
+    /// kg.
+    pub(crate) dry_mass: P,
+    /// When the phase begins, kg.
+    pub(crate) propellant: P,
+    /// From 0 to 1.
+    pub(crate) throttle: P,
+    /// The thrust of its engine, while it is lit.
+    pub(crate) burn: Option<ThrustPiece<P>>,
+}
+
+impl<P: Scalar<Value = f64, Mask = bool>> PartState<P> {
+    /// That of a case when the flight starts.
+    fn first(numbers: &impl Numbers<P>, part: usize) -> Self {
+        let of_all =
+            |of: fn(&Part) -> f64| numbers.number(|case| f64::from(case.parts[part].count) * of(&case.parts[part]));
+        Self {
+            is_there: true,
+            dry_mass: of_all(|part| part.dry_mass),
+            propellant: of_all(|part| part.propellant),
+            throttle: P::one(),
+            burn: None,
+        }
+    }
+
+    /// The same in other numbers.
+    fn map<Q>(&self, number: impl Fn(P) -> Q + Copy) -> PartState<Q> {
+        PartState {
+            is_there: self.is_there,
+            dry_mass: number(self.dry_mass),
+            propellant: number(self.propellant),
+            throttle: number(self.throttle),
+            burn: self.burn.map(|burn| burn.map(number)),
+        }
+    }
+
+    /// The thrust in vacuum where the phase begins, N.
+    fn thrust(&self) -> P {
+        self.burn.map_or(P::zero(), |burn| burn.thrust * self.throttle)
+    }
+
+    /// Its mass flow where the phase begins, kg/s.
+    fn mass_flow(&self) -> P {
+        self.burn.map_or(P::zero(), |burn| burn.thrust * self.throttle * burn.mass_flow_of_unit)
+    }
+
+    /// The time after which its propellant is spent, s, where no load limit throttles it.
+    fn time_to_burnout(&self) -> Option<P> {
+        self.burn?.time_to_burn(self.propellant, self.throttle)
+    }
+
+    /// The piece of its profile of a number, lit at a time, s.
+    fn piece(numbers: &impl Numbers<P>, part: usize, ignition: P, number: usize) -> Option<ThrustPiece<P>> {
+        let engine = numbers.case().parts[part].engine.as_ref()?;
+        let entry = |number: usize, of: fn(ThrustEntry) -> f64| {
+            numbers.number(|case| {
+                let engine = case.parts[part].engine.as_ref();
+                engine.and_then(|engine| engine.thrust.entry(number)).map_or(0.0, of)
+            })
+        };
+        let of_engine =
+            |of: fn(&Engine) -> f64| numbers.number(|case| case.parts[part].engine.as_ref().map_or(0.0, of));
+        let count = f64::from(numbers.case().parts[part].count);
+        engine.thrust.entry(number)?;
+        let [thrust, time] = [entry(number, |entry| entry.thrust) * count, entry(number, |entry| entry.time)];
+        let (rate, until) = match engine.thrust.entry(number + 1) {
+            None => (P::zero(), None),
+            Some(_) => {
+                let [then, end] =
+                    [entry(number + 1, |entry| entry.thrust) * count, entry(number + 1, |entry| entry.time)];
+                ((then - thrust) * (end - time).recip(), Some(ignition + end))
+            }
+        };
+        let mass_flow_of_unit = of_engine(|engine| Engine::mass_flow_of_unit(engine.specific_impulse));
+        let exit_area = of_engine(|engine| engine.exit_area) * count;
+        Some(ThrustPiece { ignition, number, thrust, rate, until, mass_flow_of_unit, exit_area })
+    }
 }
 
 /// The vehicle of the start.
@@ -62,7 +176,24 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             thrust: None,
             thrust_of: None,
             canopies: Vec::new(),
+            cause: Change::Start,
+            held: numbers.case().hold_down,
+            parts: (0..numbers.case().parts.len()).map(|part| PartState::first(numbers, part)).collect(),
+            load_limit: None,
+            steering: numbers.case().steering.clone(),
+            steering_of: None,
         }
+        .weighed()
+    }
+
+    /// The same with the mass of its parts, if it has any.
+    fn weighed(self) -> Self {
+        if self.parts.is_empty() {
+            return self;
+        }
+        let there = self.parts.iter().filter(|part| part.is_there);
+        let mass = there.fold(P::zero(), |mass, part| mass + part.dry_mass + part.propellant);
+        Self { vehicle: self.vehicle.with_mass(mass), ..self }
     }
 
     /// The same in other numbers.
@@ -74,7 +205,70 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             thrust: self.thrust.map(|thrust| thrust.map(number)),
             thrust_of: self.thrust_of,
             canopies: self.canopies.iter().map(|canopy| canopy.map(number)).collect(),
+            cause: self.cause,
+            held: self.held,
+            parts: self.parts.iter().map(|part| part.map(number)).collect(),
+            load_limit: self.load_limit.map(number),
+            steering: self.steering.clone(),
+            steering_of: self.steering_of,
         }
+    }
+
+    /// The share of the thrust in vacuum of all parts that burn that their throttles leave, where the phase begins.
+    pub(crate) fn throttle(&self) -> P {
+        let sum = |of: fn(&PartState<P>) -> P| self.lit().fold(P::zero(), |sum, (_, part)| sum + of(part));
+        let full = sum(|part| part.burn.map_or(P::zero(), |burn| burn.thrust));
+        if full.value() > 0.0 { sum(PartState::thrust) * full.recip() } else { P::one() }
+    }
+
+    /// The parts that burn, with their places.
+    fn lit(&self) -> impl Iterator<Item = (usize, &PartState<P>)> {
+        self.parts.iter().enumerate().filter(|(_, part)| part.burn.is_some())
+    }
+
+    /// The propellant of a part at a time, s, when the vehicle has a mass, kg.
+    pub(crate) fn propellant(&self, part: usize, time: P, mass: P) -> P {
+        let state = &self.parts[part];
+        let Some(burn) = state.burn else { return state.propellant };
+        let burnt = match self.load_limit {
+            None => burn.burnt(state.throttle, time - self.since),
+            // The limit throttles all engines alike.
+            Some(_) => (self.vehicle.mass - mass) * self.share(state),
+        };
+        let left = state.propellant - burnt;
+        P::select(left.less_than(0.0), left - left.value(), left)
+    }
+
+    /// The share of a part in the mass flow of all.
+    fn share(&self, part: &PartState<P>) -> P {
+        let all = self.lit().fold(P::zero(), |flow, (_, part)| flow + part.mass_flow());
+        if all.value() > 0.0 { part.mass_flow() * all.recip() } else { P::zero() }
+    }
+
+    /// The parts at a time, s, when the vehicle has a mass, kg: those of a phase that begins then.
+    fn parts_at(&self, time: P, mass: P) -> Vec<PartState<P>> {
+        let at = |(place, part): (usize, &PartState<P>)| {
+            let burn =
+                part.burn.map(|burn| ThrustPiece { thrust: burn.thrust + burn.rate * (time - self.since), ..burn });
+            PartState { propellant: self.propellant(place, time, mass), burn, ..*part }
+        };
+        self.parts.iter().enumerate().map(at).collect()
+    }
+
+    /// The mass at which a part that a load limit throttles is burnt out, kg, and which part that is; none where time alone tells.
+    pub(crate) fn burnout_mass(&self) -> Option<(P, usize)> {
+        self.load_limit?;
+        let of_part = |(place, part): (usize, &PartState<P>)| {
+            let share = self.share(part);
+            (share.value() > 0.0).then(|| (self.vehicle.mass - part.propellant * share.recip(), place))
+        };
+        self.lit().filter_map(of_part).max_by(|a, b| a.0.value().total_cmp(&b.0.value()))
+    }
+
+    /// Whether a load limit throttles several engines of which one has a profile by time, so that the share of each in the mass flow changes.
+    pub(crate) fn has_unknown_shares(&self) -> bool {
+        let changes = |(_, part): (usize, &PartState<P>)| part.burn.is_some_and(|burn| burn.rate.value() != 0.0);
+        self.load_limit.is_some() && self.lit().count() > 1 && self.lit().any(changes)
     }
 
     /// The thrust that is on, with the propellant that is left when the vehicle has a mass, kg.
@@ -85,11 +279,11 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
 
     /// Whether nothing changes in it by time alone.
     pub(crate) fn is_still(&self) -> bool {
-        self.thrust.is_none() && self.canopies.is_empty()
+        self.thrust.is_none() && self.canopies.is_empty() && self.lit().next().is_none()
     }
 
-    /// When the propellant is spent, s.
-    pub(crate) fn burnout(&self) -> Option<P> {
+    /// When the propellant of the thrust is spent, s.
+    fn thrust_end(&self) -> Option<P> {
         let thrust = self.thrust?;
         Some(self.since + thrust.propellant? * thrust.mass_flow().recip())
     }
@@ -110,6 +304,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     #[must_use]
     pub(crate) fn after(&self, event: usize, numbers: &impl Numbers<P>, time: P, mass: P) -> Self {
         let effect = &numbers.case().events[event].then;
+        let parts = self.parts_after(event, effect, numbers, time, mass);
         let number = |of: fn(&Effect) -> Option<f64>| {
             of(effect)?;
             Some(numbers.number(|case| of(&case.events[event].then).unwrap_or_default()))
@@ -152,22 +347,91 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         });
         let canopies = self.canopies.iter().filter(stays).copied().chain(deployed).collect();
         let aerodynamics_of = effect.aerodynamics.as_ref().map(|_| event).or(self.aerodynamics_of);
-        Self { since: time, vehicle, aerodynamics_of, thrust, thrust_of, canopies }
+        let load_limit = match effect.load_limit {
+            None => self.load_limit,
+            Some(None) => None,
+            Some(Some(_)) => number(|effect| effect.load_limit.flatten()).map(|limit| limit * STANDARD_GRAVITY),
+        };
+        let (steering, steering_of) = match &effect.steer {
+            None => (self.steering.clone(), self.steering_of),
+            Some(steering) => (steering.clone(), Some(event)),
+        };
+        let after = Self {
+            since: time,
+            vehicle,
+            aerodynamics_of,
+            thrust,
+            thrust_of,
+            canopies,
+            cause: Change::Event(event),
+            held: self.held && !effect.lift_off,
+            parts,
+            load_limit,
+            steering,
+            steering_of,
+        };
+        after.weighed()
     }
 
-    /// When time alone changes something next, s: the propellant is spent, or a canopy begins to fill or is full.
-    pub(crate) fn next_change(&self) -> Option<P> {
-        let instants = [self.burnout(), self.next_inflation()].into_iter().flatten();
-        instants.min_by(|a, b| a.value().total_cmp(&b.value()))
+    /// The parts after the effect of an event at a time, s, before which the vehicle has a mass, kg.
+    fn parts_after(
+        &self,
+        event: usize,
+        effect: &Effect,
+        numbers: &impl Numbers<P>,
+        time: P,
+        mass: P,
+    ) -> Vec<PartState<P>> {
+        let mut parts = self.parts_at(time, mass);
+        for part in effect.separate.iter().flat_map(|separation| &separation.parts) {
+            parts[*part] = PartState { is_there: false, burn: None, ..parts[*part] };
+        }
+        for part in &effect.shut_down {
+            parts[*part].burn = None;
+        }
+        for (place, throttle) in effect.throttle.iter().enumerate() {
+            parts[throttle.part].throttle = numbers.number(|case| case.events[event].then.throttle[place].value);
+        }
+        for part in &effect.ignite {
+            if parts[*part].is_there && parts[*part].burn.is_none() {
+                parts[*part].burn = PartState::piece(numbers, *part, time, 0);
+            }
+        }
+        parts
     }
 
-    /// The phase that begins with the [next change](Self::next_change) by time alone, when the vehicle has a mass, kg.
+    /// When time alone changes something next, s, and what.
+    pub(crate) fn next_change(&self) -> Option<(P, Change)> {
+        let of_thrust = self.thrust_end().map(|end| (end, Change::ThrustEnds));
+        let of_canopies = self.next_inflation().map(|inflation| (inflation, Change::Inflation));
+        let burnout = |part: &PartState<P>| part.time_to_burnout().filter(|_| self.load_limit.is_none());
+        let burnouts =
+            self.lit().filter_map(|(place, part)| Some((self.since + burnout(part)?, Change::Burnout(place))));
+        let pieces = self.lit().filter_map(|(place, part)| Some((part.burn?.until?, Change::NextPiece(place))));
+        let all = of_thrust.into_iter().chain(of_canopies).chain(burnouts).chain(pieces);
+        all.min_by(|a, b| a.0.value().total_cmp(&b.0.value()))
+    }
+
+    /// The change after which a phase begins at a time, s, with a cause: the last piece of a thrust profile ends with a burnout.
+    pub(crate) fn change_to(&self, cause: Change, time: f64) -> Change {
+        match cause {
+            Change::Burnout(part) => {
+                let ends = |(end, next): &(P, Change)| *next == Change::NextPiece(part) && end.value() <= time;
+                self.next_change().filter(ends).map_or(cause, |(_, next)| next)
+            }
+            other => other,
+        }
+    }
+
+    /// The phase that begins with a change that no event makes, at a time, s, when the vehicle has a mass, kg.
     #[must_use]
-    pub(crate) fn after_next_change(&self, time: P, mass: P) -> Self {
-        match (self.burnout(), self.next_inflation()) {
-            (Some(burnout), Some(inflation)) if inflation.value() < burnout.value() => self.inflated(time, mass),
-            (Some(_), _) => self.burnt_out(time),
-            (None, _) => self.inflated(time, mass),
+    pub(crate) fn after_change(&self, change: Change, numbers: &impl Numbers<P>, time: P, mass: P) -> Self {
+        match change {
+            Change::Start | Change::Event(_) => self.clone(),
+            Change::ThrustEnds => self.without_thrust(time),
+            Change::Inflation => self.inflated(time, mass),
+            Change::NextPiece(part) => self.on_next_piece(part, numbers, time, mass),
+            Change::Burnout(part) => self.burnt_out(part, time, mass),
         }
     }
 
@@ -175,14 +439,32 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     fn inflated(&self, time: P, mass: P) -> Self {
         let vehicle = self.vehicle.with_mass(mass);
         let canopies = self.canopies.iter().map(|canopy| canopy.at(time)).collect();
-        Self { since: time, vehicle, thrust: self.thrust_left(mass), canopies, ..self.clone() }
+        let (thrust, parts) = (self.thrust_left(mass), self.parts_at(time, mass));
+        Self { since: time, vehicle, thrust, canopies, parts, cause: Change::Inflation, ..self.clone() }.weighed()
     }
 
-    /// The phase that begins where the propellant is spent.
-    fn burnt_out(&self, time: P) -> Self {
+    /// The phase that begins where the propellant of the thrust is spent.
+    fn without_thrust(&self, time: P) -> Self {
         let spent = self.thrust.and_then(|thrust| thrust.propellant).unwrap_or_else(P::zero);
         let vehicle = self.vehicle.with_mass(self.vehicle.mass - spent);
-        Self { since: time, vehicle, thrust: None, thrust_of: None, ..self.clone() }
+        Self { since: time, vehicle, thrust: None, thrust_of: None, cause: Change::ThrustEnds, ..self.clone() }
+    }
+
+    /// The phase that begins with the next piece of the thrust of a part, or with its end, where its profile is over.
+    fn on_next_piece(&self, part: usize, numbers: &impl Numbers<P>, time: P, mass: P) -> Self {
+        let mut parts = self.parts_at(time, mass);
+        let next = parts[part].burn.and_then(|burn| PartState::piece(numbers, part, burn.ignition, burn.number + 1));
+        // The last entry of a profile has no piece behind it.
+        parts[part].burn = next.filter(|piece| piece.until.is_some());
+        let cause = if parts[part].burn.is_some() { Change::NextPiece(part) } else { Change::Burnout(part) };
+        Self { since: time, parts, cause, ..self.clone() }.weighed()
+    }
+
+    /// The phase that begins where the propellant of a part is spent.
+    fn burnt_out(&self, part: usize, time: P, mass: P) -> Self {
+        let mut parts = self.parts_at(time, mass);
+        parts[part] = PartState { propellant: P::zero(), burn: None, ..parts[part] };
+        Self { since: time, parts, cause: Change::Burnout(part), ..self.clone() }.weighed()
     }
 
     /// The same, with the models that another case has in the place of those from which this phase has its own: tables and axes. The
@@ -203,6 +485,10 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             Some(Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. }) | None => {}
         }
         phase.vehicle.nose_radius = case.vehicle.nose_radius;
+        phase.steering = match self.steering_of {
+            None => case.steering.clone(),
+            Some(event) => case.events[event].then.steer.clone().unwrap_or_default(),
+        };
         let axis = self.thrust_of.and_then(|event| Some(case.events[event].then.thrust()?.along));
         if let (Some(thrust), Some(along)) = (&mut phase.thrust, axis) {
             thrust.along = along;
@@ -218,17 +504,40 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     /// The forces on the vehicle by the models of a case, which may be another than that of the numbers.
     pub(crate) fn forces_by(&self, models_of: &Case, numbers: &impl Numbers<P>) -> Forces<P> {
         let over_mass = self.vehicle.mass.recip();
-        let burn = self.thrust.map(|thrust| Burn {
-            along: thrust.along,
-            acceleration: thrust.force * over_mass,
-            mass_flow: thrust.mass_flow(),
-        });
+        let burn = self.burn();
         let [lift, drag, bank] = numbers.offsets();
         // Those of the coefficients belong to the vehicle of the start.
         let offsets = if self.aerodynamics_of.is_none() { [lift, drag, bank] } else { [P::zero(), P::zero(), bank] };
-        Forces::new(models_of.models_of(&self.vehicle), Case::parameters_of(numbers, &self.vehicle, offsets))
+        let models = Models { steering: self.steering.clone(), ..models_of.models_of(&self.vehicle) };
+        Forces::new(models, Case::parameters_of(numbers, &self.vehicle, offsets))
             .of_mass(self.vehicle.mass)
             .burning(burn)
             .under(Canopies::of(&self.canopies, over_mass))
+            .held(self.held)
+    }
+
+    /// The thrust that acts in it, if there is any: that of an event, or of the engines together.
+    fn burn(&self) -> Option<Burn<P>> {
+        let over_mass = self.vehicle.mass.recip();
+        if let Some(thrust) = self.thrust {
+            let direction = ThrustDirection::Axis(thrust.along);
+            return Some(Burn::constant(direction, thrust.force * over_mass, thrust.mass_flow()));
+        }
+        self.lit().next()?;
+        let sum = |of: &dyn Fn(&PartState<P>, &ThrustPiece<P>) -> P| {
+            let lit = self.lit().filter_map(|(_, part)| Some((part, part.burn.as_ref()?)));
+            lit.fold(P::zero(), |sum, (part, burn)| sum + of(part, burn))
+        };
+        Some(Burn {
+            direction: ThrustDirection::Steered,
+            since: self.since,
+            acceleration: sum(&|part, _| part.thrust()) * over_mass,
+            acceleration_rate: sum(&|part, burn| burn.rate * part.throttle) * over_mass,
+            mass_flow: sum(&|part, _| part.mass_flow()),
+            mass_flow_rate: sum(&|part, burn| burn.rate * part.throttle * burn.mass_flow_of_unit),
+            exit_area_over_mass: Some(sum(&|_, burn| burn.exit_area) * over_mass)
+                .filter(|_| self.lit().any(|(_, part)| part.burn.is_some_and(|burn| burn.exit_area.value() != 0.0))),
+            load_limit: self.load_limit,
+        })
     }
 }

@@ -12,12 +12,12 @@ use num_dual::Dual64;
 use super::variation::{Dual, VariedCase};
 use super::varied_forces::{VariedForces, VariedMotion};
 use crate::coordinates::GreatCircle;
-use crate::event::{Condition, Quantity, Trigger};
+use crate::event::{Condition, Quantity, Tilt, Trigger};
 use crate::integrate::{AnyStep, Step, System, follow, follow_implicitly};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Forces, MASS, ModelMode, State, StateRate, moving};
 use crate::scalar::{Scalar, length};
-use crate::scenario::{Case, ForFormulation, FormulationIn, Numbers, Phase};
+use crate::scenario::{Case, Change, ForFormulation, FormulationIn, Numbers, Phase};
 use crate::simulate::SimulationError;
 use crate::trajectory::{EventRecord, StoredStep, Termination, Trajectory};
 
@@ -103,6 +103,8 @@ struct Follower<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize
     track: GreatCircle<Dual<W>>,
     /// How much later each event happens as the numbers vary.
     delays: Vec<Dual<W>>,
+    /// How much later each part burns out.
+    burnout_delays: Vec<Dual<W>>,
     /// How many of the records have happened.
     happened: usize,
     samples: Vec<Option<Sample<W>>>,
@@ -127,8 +129,9 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             }),
             phase,
             ground_distance: Dual::from(0.0),
-            track: GreatCircle::of(&start),
+            track: GreatCircle::of(&varied.track_start()),
             delays: vec![Dual::from(0.0); flight.case.events.len()],
+            burnout_delays: vec![Dual::from(0.0); flight.case.parts.len()],
             happened: 0,
             samples: vec![None; of.places.len()],
         };
@@ -241,6 +244,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             self.delays[record.event] = delay;
             self.change_by_time(record.before.phase, delay);
             self.keep(Place::Before(place), instant);
+            self.apply_tilt(record);
             self.apply_impulse(record, delay);
             if !self.of.flight.case.events[record.event].then.is_none() {
                 self.set_phase(self.phase.after(record.event, &self.of.varied, instant, self.mass()));
@@ -266,8 +270,12 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
     fn change_by_time(&mut self, number: usize, delay: Dual<W>) {
         while self.phase_index < number {
             self.phase_index += 1;
-            let since = self.of.flight.flown.phases[self.phase_index].since;
-            self.set_phase(self.phase.after_next_change(delay + since, self.mass()));
+            let Phase { since, cause, .. } = &self.of.flight.flown.phases[self.phase_index];
+            let change = self.phase.change_to(*cause, *since);
+            if let Change::Burnout(part) = *cause {
+                self.burnout_delays[part] = delay;
+            }
+            self.set_phase(self.phase.after_change(change, &self.of.varied, delay + *since, self.mass()));
         }
     }
 
@@ -281,6 +289,19 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             *mass = phase.vehicle.mass;
         }
         self.phase = phase;
+    }
+
+    /// Turns the velocity by the tilt of an event, if it has one.
+    fn apply_tilt(&mut self, record: &EventRecord) {
+        let Follow { flight, varied, .. } = self.of;
+        if flight.case.events[record.event].then.tilt.is_none() {
+            return;
+        }
+        let number = |of: fn(Tilt) -> f64| varied.number(|case| case.events[record.event].then.tilt.map_or(0.0, of));
+        let (angle, azimuth) = (number(|tilt| tilt.angle), number(|tilt| tilt.azimuth));
+        let state = F::state(&self.state);
+        let velocity = motion::tilted(&state.planet_fixed(), angle, azimuth);
+        self.state = F::numbers(&State { velocity, ..state });
     }
 
     /// Changes the velocity by the impulse of an event, if it has one.
@@ -349,6 +370,9 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
                 Trigger::After { event, .. } => {
                     self.delays[event] + self.later(|case| value_of(&case.stop.when[index]))
                 }
+                Trigger::AfterBurnout { part, .. } => {
+                    self.burnout_delays[part] + self.later(|case| value_of(&case.stop.when[index]))
+                }
             },
         }
     }
@@ -370,13 +394,20 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
                     self.meets(&condition, time).then(delay)
                 }
                 Trigger::After { event, .. } => Some(self.delays[event] + self.later(value)),
+                Trigger::AfterBurnout { part, .. } => Some(self.burnout_delays[part] + self.later(value)),
             }
         };
         if let Some(delay) = now.iter().find_map(delay_of) {
             return delay;
         }
-        if let Some(change) = self.phase.next_change().filter(|change| change.re <= time) {
+        if let Some((change, _)) = self.phase.next_change().filter(|(change, _)| change.re <= time) {
             return change - change.re;
+        }
+        let next_cause = flight.flown.phases.get(self.phase_index + 1).filter(|next| next.since <= time);
+        if let (Some((mass, _)), Some(Change::Burnout(_))) =
+            (self.phase.burnout_mass(), next_cause.map(|next| next.cause))
+        {
+            return self.condition_delay(Quantity::Mass, mass, time, rates);
         }
         let plain = &self.forces.plain;
         let values = F::state(&self.state.map(|number| number.re));
@@ -434,7 +465,7 @@ const INSIDE: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
 fn value_of(trigger: &Trigger) -> f64 {
     match *trigger {
         Trigger::Condition(Condition { value, .. }) => value,
-        Trigger::After { delay, .. } => delay,
+        Trigger::After { delay, .. } | Trigger::AfterBurnout { delay, .. } => delay,
     }
 }
 

@@ -215,7 +215,7 @@ impl<'a, const W: usize> VariedSample<'a, W> {
     fn with_state_moved(&self, variation: usize, offset: f64) -> FlightPoint {
         let Sample { time, state, ground_distance, phase, mode } = self.sample;
         let moved = |number: Dual<W>| number.re + offset * slope(&number, variation);
-        let origin = Origin::of(&State::from(self.varied.start()).map(moved).planet_fixed());
+        let origin = Origin::of(&State::from(self.varied.track_start()).map(moved).planet_fixed());
         let phase = phase.map(moved);
         let mut forces = phase.forces(&self.flight.case);
         forces.enter(*mode);

@@ -6,8 +6,10 @@ use num_dual::{Derivative, DualSVec64};
 use crate::coordinates::PlanetFixed;
 use crate::event::Event;
 use crate::motion::{Models, Parameters};
+use crate::part::Part;
 use crate::propulsion::ThrustAxis;
 use crate::scenario::{Case, Numbers};
+use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Vehicle};
 
 /// A number with `W` derivatives.
@@ -95,7 +97,12 @@ impl Variation {
                 let at_once = event.then.deploy.is_some_and(|it| it.inflation_time == 0.0 && it.delay == 0.0);
                 (thrusts, opens, at_once)
             };
-            case.events.iter().map(of_event).collect::<Vec<_>>()
+            let of_part = |part: &Part| {
+                let exit_area = part.engine.as_ref().is_some_and(|engine| engine.exit_area > 0.0);
+                (part.count, part.propellant > 0.0, exit_area)
+            };
+            let of_events: Vec<_> = case.events.iter().map(of_event).collect();
+            (of_events, case.parts.iter().map(of_part).collect::<Vec<_>>())
         };
         let of_flight = kinds(case);
         self.nodes.iter().any(|node| kinds(&node.case) != of_flight)
@@ -124,8 +131,10 @@ impl Variation {
 #[derive(PartialEq)]
 struct ModelsOfFlight {
     of_start: Models,
-    /// Of each event its aerodynamics as far as they are tables, and the axes of its thrust and impulse.
-    of_events: Vec<(Option<Models>, [Option<ThrustAxis>; 2])>,
+    /// Where the axis of the vehicle points.
+    steering: Steering,
+    /// Of each event its aerodynamics as far as they are tables, the axes of its thrust and impulse, and its steering.
+    of_events: Vec<(Option<Models>, [Option<ThrustAxis>; 2], Option<Steering>)>,
 }
 
 impl ModelsOfFlight {
@@ -136,9 +145,9 @@ impl ModelsOfFlight {
             };
             let axes =
                 [event.then.thrust().map(|thrust| thrust.along), event.then.impulse.map(|impulse| impulse.along)];
-            (event.then.aerodynamics.as_ref().map(with), axes)
+            (event.then.aerodynamics.as_ref().map(with), axes, event.then.steer.clone())
         });
-        Self { of_start: case.models(), of_events: of_events.collect() }
+        Self { of_start: case.models(), steering: case.steering.clone(), of_events: of_events.collect() }
     }
 }
 
@@ -166,6 +175,15 @@ impl<const W: usize> VariedCase<'_, W> {
             return start;
         }
         let component = |index: usize| self.number(move |case| <[f64; 6]>::from(case.initial_state)[index]);
+        PlanetFixed::from(std::array::from_fn(component))
+    }
+
+    /// From where ranges are measured.
+    pub(super) fn track_start(&self) -> PlanetFixed<Dual<W>> {
+        if self.case.origin.is_none() {
+            return self.start();
+        }
+        let component = |index: usize| self.number(move |case| <[f64; 6]>::from(*case.track_start())[index]);
         PlanetFixed::from(std::array::from_fn(component))
     }
 

@@ -36,8 +36,8 @@ struct PendingCondition {
     /// So far beyond the value the condition is met, in its unit: 0, but for a quantity that began on the value and has not moved on to
     /// the far side.
     margin: f64,
-    /// The event for which it waits, and the delay after it, s.
-    waits_for: Option<(usize, f64)>,
+    /// What it waits for, and the delay after it, s.
+    waits_for: Option<(Cause, f64)>,
     action: Action,
     status: Status,
 }
@@ -49,6 +49,17 @@ enum Action {
     Event(usize),
     /// The end of the flight.
     End(Termination),
+    /// The end of the burn of a part, whose place in the list is given when the burn begins.
+    Burnout(usize),
+}
+
+/// What others may wait for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cause {
+    /// The event of this place in the list.
+    Event(usize),
+    /// The burnout of the part of this place in the list.
+    Burnout(usize),
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -68,7 +79,10 @@ impl PendingCondition {
         let at = |value| Condition { quantity: Quantity::Time, value, direction: Direction::Rising };
         let (condition, waits_for, status) = match trigger {
             Trigger::Condition(condition) => (condition, None, Status::Armed),
-            Trigger::After { event, delay } => (at(f64::INFINITY), Some((event, delay)), Status::Dormant),
+            Trigger::After { event, delay } => (at(f64::INFINITY), Some((Cause::Event(event), delay)), Status::Dormant),
+            Trigger::AfterBurnout { part, delay } => {
+                (at(f64::INFINITY), Some((Cause::Burnout(part), delay)), Status::Dormant)
+            }
         };
         Self { condition, margin: 0.0, waits_for, action, status }
     }
@@ -91,14 +105,19 @@ impl ConditionDetector {
         let stops = case.stop.when.iter().enumerate();
         let stops = stops.map(|(index, when)| (*when, Action::End(Termination::Condition(index))));
         let ceiling = case.stop.ceiling().map(|condition| (condition.into(), Action::End(Termination::AtmosphereExit)));
+        // Under a load limit the mass tells when a part is burnt out; the first waits until a phase says at which.
+        let limits = case.events.iter().any(|event| event.then.load_limit.flatten().is_some());
+        let spent = Condition { quantity: Quantity::Mass, value: f64::NEG_INFINITY, direction: Direction::Falling };
+        let burnout = limits.then_some((spent.into(), Action::Burnout(0)));
         let all: Vec<_> = events
             .chain(stops)
             .chain(ceiling)
+            .chain(burnout)
             .map(|(trigger, action)| PendingCondition::new(trigger, action))
             .collect();
         let waits = |quantity: &Quantity| all.iter().any(|pending| pending.condition.quantity == *quantity);
         let watched = Quantity::ALL.into_iter().filter(waits).collect();
-        let track = GreatCircle::of(&case.initial_state).map(Dual64::from);
+        let track = GreatCircle::of(case.track_start()).map(Dual64::from);
         let around = TAU * case.planet.equatorial_radius();
         let mut conditions = Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()], track, around };
         conditions.last = conditions.read(forces, start);
@@ -222,23 +241,40 @@ impl ConditionDetector {
         found
     }
 
-    /// The first of the events that are due, which it then is no more: it happens at a time, s, from which others count.
-    pub(super) fn next_event(&mut self, time: f64) -> Option<usize> {
-        let event = |pending: &mut PendingCondition| match (pending.status, pending.action) {
-            (Status::Due, Action::Event(event)) => {
-                pending.status = Status::Done;
-                Some(event)
-            }
-            _ => None,
+    /// The first of the events and burnouts that are due, which it then is no more: it happens at a time, s, from which others count.
+    pub(super) fn next_event(&mut self, time: f64) -> Option<Cause> {
+        let event = |pending: &mut PendingCondition| {
+            let cause = match (pending.status, pending.action) {
+                (Status::Due, Action::Event(event)) => Cause::Event(event),
+                (Status::Due, Action::Burnout(part)) => Cause::Burnout(part),
+                _ => return None,
+            };
+            pending.status = Status::Done;
+            Some(cause)
         };
-        let event = self.all.iter_mut().find_map(event)?;
+        let cause = self.all.iter_mut().find_map(event)?;
+        self.happened(cause, time);
+        Some(cause)
+    }
+
+    /// Something has happened at a time, s, from which others count.
+    pub(super) fn happened(&mut self, cause: Cause, time: f64) {
         for pending in &mut self.all {
-            if let Some((_, delay)) = pending.waits_for.filter(|(other, _)| *other == event) {
+            if let Some((_, delay)) = pending.waits_for.filter(|(other, _)| *other == cause) {
                 pending.condition.value = time + delay;
                 pending.status = Status::Armed;
             }
         }
-        Some(event)
+    }
+
+    /// Expects a part to burn out at a mass, kg, or none to do so.
+    pub(super) fn expect_burnout(&mut self, at: Option<(f64, usize)>) {
+        for pending in self.all.iter_mut().filter(|pending| matches!(pending.action, Action::Burnout(_))) {
+            pending.status = if at.is_some() { Status::Armed } else { Status::Dormant };
+            if let Some((mass, part)) = at {
+                (pending.condition.value, pending.action) = (mass, Action::Burnout(part));
+            }
+        }
     }
 
     /// How the flight ends, if a condition for that is due.

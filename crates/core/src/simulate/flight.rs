@@ -5,18 +5,18 @@ use std::array::from_fn;
 use nalgebra::Vector3;
 
 use super::SimulationError;
-use super::conditions::{ConditionDetector, moments_up_to};
+use super::conditions::{Cause, ConditionDetector, moments_up_to};
 use super::detector::{Detector, cut_at_first};
 use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boundary_in_time};
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
-use crate::event::{Effect, ThrustCommand};
+use crate::event::{Effect, Separation, ThrustCommand, Tilt};
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Chatter, Formulation, MASS, Singularity, State, StateRate};
 use crate::propulsion::{Impulse, ThrustAxis};
-use crate::scenario::{Phase, Scenario};
-use crate::trajectory::{Arrival, EventRecord, Instant, Termination, Warning};
+use crate::scenario::{Change, Phase, Scenario};
+use crate::trajectory::{Arrival, EventRecord, Instant, SeparationRecord, Termination, Warning};
 
 /// A flight between its start and its end.
 pub(super) struct Flight<'a, F, const N: usize> {
@@ -40,6 +40,8 @@ pub(super) struct FlightLog {
     /// The phases after the first.
     pub(super) phases: Vec<Phase>,
     pub(super) event_records: Vec<EventRecord>,
+    /// What left the vehicle.
+    pub(super) separations: Vec<SeparationRecord>,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -54,7 +56,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             Limits { relative_tolerance: case.solver.relative_tolerance, steps: case.solver.step_limit, interrupt };
         let time = case.start_time;
         let start = State::from(case.initial_state);
-        let state = F::numbers(&State { mass: Some(case.vehicle.mass), heat_load: Some(0.0), ..start });
+        let phase = Phase::first(case);
+        let state = F::numbers(&State { mass: Some(phase.vehicle.mass), heat_load: Some(0.0), ..start });
         regular(&motion, time, &state)?;
         enter_mode_of(&mut motion, time, &state)?;
         let integrator = Integrator::new(&motion, time, state, limits);
@@ -62,7 +65,6 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let stop_altitude = StopAltitudeDetector::new(case.planet.shape, case.stop.altitude, &start);
         let model_boundaries = ModelBoundaryDetector::new(motion.forces(), &start);
         let conditions = ConditionDetector::new(case, motion.forces(), &start);
-        let phase = Phase::first(case);
         let log = FlightLog::default();
         Ok(Self {
             scenario,
@@ -81,7 +83,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
-        let is_on_ground = self.scenario.starts_on_stop_altitude();
+        let is_on_ground = self.scenario.starts_on_stop_altitude() && !self.phase.held;
         if !self.conditions.is_empty() {
             return self.apply_changes(None, None, is_on_ground);
         }
@@ -118,7 +120,8 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if self.phase.is_still() {
             return end;
         }
-        [self.phase.next_change(), self.phase.last_instant()].into_iter().flatten().fold(end, f64::min)
+        let next = self.phase.next_change().map(|(time, _)| time);
+        [next, self.phase.last_instant()].into_iter().flatten().fold(end, f64::min)
     }
 
     /// Takes a step.
@@ -209,8 +212,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     fn let_events_happen(&mut self, is_on_ground: bool) -> Result<bool, SimulationError> {
         self.detect_jumps();
         loop {
-            while let Some(event) = self.conditions.next_event(self.time) {
-                self.happen(event)?;
+            while let Some(cause) = self.conditions.next_event(self.time) {
+                match cause {
+                    Cause::Event(event) => self.happen(event)?,
+                    Cause::Burnout(part) => self.change(Change::Burnout(part))?,
+                }
                 self.change_by_time()?;
                 self.detect_jumps();
             }
@@ -240,14 +246,22 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Ends the thrust if its propellant is spent, and lets canopies begin to fill, or be full.
     fn change_by_time(&mut self) -> Result<(), SimulationError> {
-        while self.phase.next_change().is_some_and(|change| self.time >= change) {
-            let next = self.phase.after_next_change(self.time, self.mass());
-            if self.phase.thrust.is_some() && next.thrust.is_none() {
+        while let Some((_, change)) = self.phase.next_change().filter(|(time, _)| self.time >= *time) {
+            if change == Change::ThrustEnds {
                 self.log.warnings.push(Warning::PropellantSpent { time: self.time });
             }
-            self.enter(next)?;
+            self.change(change)?;
         }
         Ok(())
+    }
+
+    /// Goes on after a change that no event makes.
+    fn change(&mut self, change: Change) -> Result<(), SimulationError> {
+        let next = self.phase.after_change(change, self.scenario.case(), self.time, self.mass());
+        if let Change::Burnout(part) = next.cause {
+            self.conditions.happened(Cause::Burnout(part), self.time);
+        }
+        self.enter(next)
     }
 
     /// Finds the conditions that are met at the present instant.
@@ -277,10 +291,20 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     fn happen(&mut self, event: usize) -> Result<(), SimulationError> {
         let effect = &self.scenario.case().events[event].then;
         let before = self.instant();
+        self.warn_of(event, effect);
+        for (place, separation) in effect.separate.iter().enumerate() {
+            self.separate(event, place, separation);
+        }
+        if let Some(Tilt { angle, azimuth }) = effect.tilt {
+            let state = F::state(&self.state).planet_fixed();
+            self.set_velocity(motion::tilted(&state, angle, azimuth));
+        }
         if let Some(impulse) = effect.impulse {
             self.apply_impulse(event, impulse);
         }
-        self.warn_of(event, effect);
+        if effect.lift_off && self.phase.held {
+            self.stop_altitude.start_upward();
+        }
         if !effect.is_none() {
             self.enter(self.phase.after(event, self.scenario.case(), self.time, self.mass()))?;
         }
@@ -298,6 +322,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.log.warnings.push(Warning::ThrustWithoutDirection { event, time });
         }
         let is_there = |parachute: &usize| self.phase.canopies.iter().any(|canopy| canopy.event == *parachute);
+        let parts = &self.phase.parts;
+        let unlit = effect.ignite.iter().filter(|part| !parts[**part].is_there || parts[**part].burn.is_some());
+        self.log.warnings.extend(unlit.map(|part| {
+            let is_there = parts[*part].is_there;
+            Warning::NotLit { event, part: *part, is_there, time }
+        }));
         let missing = effect.release.iter().filter(|parachute| !is_there(parachute));
         self.log.warnings.extend(missing.map(|parachute| Warning::NotDeployed { event, parachute: *parachute, time }));
     }
@@ -311,14 +341,33 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     fn apply_impulse(&mut self, event: usize, impulse: Impulse) {
         match self.direction(impulse.along) {
             Some(direction) => {
-                let state = F::state(&self.state);
-                let velocity = state.velocity + direction * impulse.speed_change;
-                self.state = F::numbers(&State { velocity, ..state });
-                let derivative = self.motion.derivative(self.time, &self.state);
-                self.stop_altitude.go_to(&StateRate::of::<F, N>(self.time, &self.state, &derivative));
+                let velocity = F::state(&self.state).velocity + direction * impulse.speed_change;
+                self.set_velocity(velocity);
             }
             None => self.log.warnings.push(Warning::NoDirection { event, time: self.time }),
         }
+    }
+
+    /// Goes on with another velocity, m/s.
+    fn set_velocity(&mut self, velocity: Vector3<f64>) {
+        self.state = F::numbers(&State { velocity, ..F::state(&self.state) });
+        let derivative = self.motion.derivative(self.time, &self.state);
+        self.stop_altitude.go_to(&StateRate::of::<F, N>(self.time, &self.state, &derivative));
+    }
+
+    /// Lets parts leave the vehicle, whose state they share but for the push.
+    fn separate(&mut self, event: usize, place: usize, separation: &Separation) {
+        let mut state = F::state(&self.state).planet_fixed();
+        if let Some(push) = separation.push {
+            match self.direction(push.along) {
+                Some(direction) => state.velocity += direction * push.speed_change,
+                None => self.log.warnings.push(Warning::NoDirection { event, time: self.time }),
+            }
+        }
+        let mass = self.mass();
+        let propellant = separation.parts.iter().map(|part| self.phase.propellant(*part, self.time, mass)).collect();
+        let body = separation.body;
+        self.log.separations.push(SeparationRecord { event, place, body, time: self.time, state, propellant });
     }
 
     /// The present mass, kg.
@@ -331,11 +380,20 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if let Some(mass) = self.state.get_mut(MASS) {
             *mass = phase.vehicle.mass;
         }
+        if phase.has_unknown_shares() {
+            return Err(SimulationError::UnknownShares { time: self.time });
+        }
         *self.motion.forces_mut() = phase.forces(self.scenario.case());
+        self.conditions.expect_burnout(phase.burnout_mass());
         self.phase = phase.clone();
         self.log.phases.push(phase);
         regular(&self.motion, self.time, &self.state)?;
         enter_mode_of(&mut self.motion, self.time, &self.state)
+    }
+
+    /// Whether the vehicle is held on the ground.
+    pub(super) fn is_held(&self) -> bool {
+        self.phase.held
     }
 
     /// The present instant.

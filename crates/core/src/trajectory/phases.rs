@@ -2,6 +2,7 @@
 
 use super::{EventRecord, HeatingPeaks, Peak, Peaks, Trajectory};
 use crate::event::ThrustCommand;
+use crate::scenario::Change;
 
 /// A part of a flight in which the vehicle and its thrust stay the same.
 ///
@@ -62,6 +63,11 @@ impl Trajectory {
         let begins_it = |record: &&EventRecord| record.after.phase == phase && record.before.phase == before;
         if let Some(record) = event_records.iter().find(begins_it) {
             return effect(record.event).changes_vehicle().then_some(PhaseStart::Event(record.event));
+        }
+        if let Change::Burnout(part) = self.flown.phases[phase].cause {
+            let lights =
+                |record: &&EventRecord| record.after.phase <= before && effect(record.event).ignite.contains(&part);
+            return event_records.iter().rfind(lights).map(|record| PhaseStart::Burnout(record.event));
         }
         let [was_on, is_on] = [before, phase].map(|phase| self.flown.phases[phase].thrust.is_some());
         let ignites = |record: &&EventRecord| {

@@ -5,7 +5,7 @@ use std::collections::hash_map::Entry;
 
 use reentry::coordinates::Rotation;
 use reentry::event::{
-    Condition as Crossing, Direction, Effect as CoreEffect, ThrustCommand, Event as CoreEvent, Quantity, Trigger,
+    Condition as Crossing, Direction, Effect as CoreEffect, Event as CoreEvent, Quantity, ThrustCommand, Trigger,
 };
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
@@ -252,7 +252,7 @@ fn effect(object: &mut Object) -> Option<Effect> {
         .optional()
         .texts(MOST_EVENTS);
     let (deployed, deploy) = parachute.unzip();
-    let core = CoreEffect { mass, reference_area, aerodynamics, impulse, thrust, release: Vec::new(), deploy };
+    let core = CoreEffect { mass, reference_area, aerodynamics, impulse, thrust, deploy, ..CoreEffect::default() };
     Some(Effect { core, deployed, released: released.unwrap_or_default() })
 }
 
@@ -273,7 +273,8 @@ fn impulse(object: &mut Object) -> Option<Impulse> {
 /// What becomes of the thrust.
 const THRUST_COMMAND: WordOrObject = WordOrObject { name: "ThrustCommand", doc: "New thrust, or `\"off\"`." };
 
-const OFF: Words<ThrustCommand> = Words { name: "", doc: "Switches the thrust off.", words: &[word("off", ThrustCommand::Off, "")] };
+const OFF: Words<ThrustCommand> =
+    Words { name: "", doc: "Switches the thrust off.", words: &[word("off", ThrustCommand::Off, "")] };
 
 fn thrust(object: &mut Object) -> Option<Thrust> {
     object.named(

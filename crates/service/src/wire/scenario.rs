@@ -552,13 +552,18 @@ impl SimulateRequest {
             density_factor: self.density_factor,
             wind: self.wind.core.clone(),
             vehicle: self.vehicle.clone(),
+            parts: Vec::new(),
             control: self.control.clone(),
+            steering: reentry::steering::Steering::default(),
             heating: self.heating.as_ref().map(|heating| heating.core),
             events: self.events.iter().map(|event| event.to_core(&self.events, &references)).collect(),
             start_time: 0.0,
             initial_state,
+            hold_down: false,
+            origin: None,
             stop,
             solver: self.solver,
+            bodies: Vec::new(),
         };
         match Scenario::new(case) {
             Ok(scenario) if across.is_empty() => Ok(scenario),
@@ -592,7 +597,22 @@ pub fn fault(fault: &scenario::Fault) -> Fault {
         | scenario::Fault::NoSuchEvent { field }
         | scenario::Fault::NeverHappens { field }
         | scenario::Fault::PropellantUnused { field }
+        | scenario::Fault::NoSuchEngine { field }
+        | scenario::Fault::NoSuchPart { field }
+        | scenario::Fault::SeparatedTwice { field, .. }
+        | scenario::Fault::LitTwice { field, .. }
+        | scenario::Fault::PropellantWithoutEngine { field }
+        | scenario::Fault::PartWithoutMass { field }
+        | scenario::Fault::NothingRemains { field }
+        | scenario::Fault::ThrustTimes { field }
+        | scenario::Fault::NoPressure { field }
+        | scenario::Fault::SaidByParts { field }
+        | scenario::Fault::TooManyBodies { field }
         | scenario::Fault::NoParachute { field, .. } => format!("/{}", field.replace('.', "/")),
+        scenario::Fault::OfBody { field, fault: of_body } => {
+            format!("/{}{}", field.replace('.', "/"), self::fault(of_body).pointer)
+        }
+        scenario::Fault::SphericalParts => "/solver/formulation".to_owned(),
         scenario::Fault::LowCeiling { .. } => "/stop/ceiling".to_owned(),
         scenario::Fault::NoNoseRadius => "/vehicle/nose_radius".to_owned(),
         scenario::Fault::OddShape { .. } => "/planet/polar_radius".to_owned(),

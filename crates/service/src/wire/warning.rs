@@ -196,6 +196,18 @@ impl Warning {
                 );
                 ("outside_range", detail)
             }
+            trajectory::Warning::NotLit { event, part, is_there, time } => {
+                let why = if is_there { "burns already" } else { "has left the vehicle" };
+                let detail = format!("Event {event} lights nothing: part {part} {why} (at {})", seconds(time));
+                ("not_lit", detail)
+            }
+            trajectory::Warning::NeverLifted { time } => {
+                let detail = format!(
+                    "Vehicle never lifts off: its thrust does not exceed its weight until the flight ends (at {})",
+                    seconds(time)
+                );
+                ("never_lifted", detail)
+            }
             trajectory::Warning::PropellantSpent { time } => {
                 ("propellant_spent", format!("Propellant is spent: the thrust ends (at {})", seconds(time)))
             }
