@@ -90,6 +90,8 @@ pub enum Quantity {
     ApoapsisAltitude,
     /// Of the osculating orbit, above the equatorial radius, m.
     PeriapsisAltitude,
+    /// Of the osculating orbit; 1 for motion along the radius vector.
+    Eccentricity,
     /// Of the osculating orbit to the equator, rad.
     Inclination,
     /// Into the stagnation point, W/m².
@@ -147,7 +149,7 @@ pub enum Engine {
 
 impl Quantity {
     /// All of them.
-    pub(crate) const ALL: [Self; 21] = [
+    pub(crate) const ALL: [Self; 22] = [
         Self::Time,
         Self::Altitude,
         Self::Speed,
@@ -161,6 +163,7 @@ impl Quantity {
         Self::SpecificEnergy,
         Self::ApoapsisAltitude,
         Self::PeriapsisAltitude,
+        Self::Eccentricity,
         Self::Inclination,
         Self::HeatFlux,
         Self::HeatLoad,

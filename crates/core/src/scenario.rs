@@ -17,7 +17,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::atmosphere::Atmosphere;
-use crate::control::{Command, Control};
+use crate::control::{Against, Command, Control};
 use crate::coordinates::{GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Engine, Event, Quantity, Trigger};
 use crate::heating::{Heating, Stagnation};
@@ -399,6 +399,12 @@ impl Case {
         !self.events.is_empty() || !self.stop.when.is_empty() || self.stop.ceiling.is_some()
     }
 
+    /// Whether a phase of the flight begins with an event: it changes something, or an angle runs since then.
+    pub(crate) fn begins_phase(&self, event: usize) -> bool {
+        !self.events[event].then.is_none()
+            || self.control.commands().into_iter().any(|command| command.event() == Some(event))
+    }
+
     /// What ends the flight or lets something happen, with its place in the case.
     fn triggers(&self) -> impl Iterator<Item = (String, &Trigger)> {
         let events = self.events.iter().enumerate().map(|(index, event)| (format!("events.{index}.when"), &event.when));
@@ -491,11 +497,12 @@ impl Case {
         if self.atmosphere.has_speed_of_sound() {
             return Vec::new();
         }
-        let Control { bank_angle, angle_of_attack } = &self.control;
+        let [bank_angle, angle_of_attack] =
+            self.control.commands().map(|command| command.against() == Some(Against::Mach));
         let needs: [(Cow<'static, str>, bool); 3] = [
             ("vehicle.aerodynamics.type".into(), self.vehicle.aerodynamics.is_by_mach()),
-            ("control.bank_angle.against".into(), bank_angle.is_by_mach()),
-            ("control.angle_of_attack.against".into(), angle_of_attack.is_by_mach()),
+            ("control.bank_angle.against".into(), bank_angle),
+            ("control.angle_of_attack.against".into(), angle_of_attack),
         ];
         let conditions = self
             .conditions()
@@ -535,8 +542,13 @@ impl Case {
             }
             _ => None,
         });
+        let schedules = [("bank_angle", &self.control.bank_angle), ("angle_of_attack", &self.control.angle_of_attack)];
+        let clockless = schedules.into_iter().filter_map(|(name, command)| {
+            let is_missing = self.events.get(command.event()?).is_none();
+            is_missing.then(|| Fault::NoSuchEvent { field: format!("control.{name}.against.since") })
+        });
         let low = low.map(|ceiling| Fault::LowCeiling { ceiling, altitude });
-        falling.chain(low).chain(missing).chain(orphans).collect()
+        falling.chain(low).chain(missing).chain(orphans).chain(clockless).collect()
     }
 
     /// Whether an event waits for others that wait for each other, so that none of them ever happens.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Case, Numbers};
 use crate::event::{Effect, Engine};
-use crate::motion::{Burn, Forces};
+use crate::motion::{Burn, Forces, Models};
 use crate::parachute::{Canopies, Canopy, Parachute};
 use crate::propulsion::Thrust;
 use crate::scalar::Scalar;
@@ -27,6 +27,8 @@ pub(crate) struct Phase<P = f64> {
     pub(crate) thrust_of: Option<usize>,
     /// The parachutes that are deployed, whether they are open yet or not.
     pub(crate) canopies: Vec<Canopy<P>>,
+    /// When the events happened since which the bank angle and the angle of attack run, s; none where they have not, or where there are none.
+    pub(crate) origins: [Option<P>; 2],
 }
 
 /// The vehicle of the start.
@@ -62,6 +64,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             thrust: None,
             thrust_of: None,
             canopies: Vec::new(),
+            origins: [None; 2],
         }
     }
 
@@ -74,6 +77,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             thrust: self.thrust.map(|thrust| thrust.map(number)),
             thrust_of: self.thrust_of,
             canopies: self.canopies.iter().map(|canopy| canopy.map(number)).collect(),
+            origins: self.origins.map(|origin| origin.map(number)),
         }
     }
 
@@ -152,7 +156,10 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         });
         let canopies = self.canopies.iter().filter(stays).copied().chain(deployed).collect();
         let aerodynamics_of = effect.aerodynamics.as_ref().map(|_| event).or(self.aerodynamics_of);
-        Self { since: time, vehicle, aerodynamics_of, thrust, thrust_of, canopies }
+        let [bank_angle, angle_of_attack] = numbers.case().control.commands().map(|command| command.event() == Some(event));
+        let origin = |begins: bool, before: Option<P>| if begins { Some(time) } else { before };
+        let origins = [origin(bank_angle, self.origins[0]), origin(angle_of_attack, self.origins[1])];
+        Self { since: time, vehicle, aerodynamics_of, thrust, thrust_of, canopies, origins }
     }
 
     /// When time alone changes something next, s: the propellant is spent, or a canopy begins to fill or is full.
@@ -226,7 +233,10 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         let [lift, drag, bank] = numbers.offsets();
         // Those of the coefficients belong to the vehicle of the start.
         let offsets = if self.aerodynamics_of.is_none() { [lift, drag, bank] } else { [P::zero(), P::zero(), bank] };
-        Forces::new(models_of.models_of(&self.vehicle), Case::parameters_of(numbers, &self.vehicle, offsets))
+        let models = models_of.models_of(&self.vehicle);
+        let control = models.control.since(self.origins.map(|origin| origin.map(|time| time.value())));
+        Forces::new(Models { control, ..models }, Case::parameters_of(numbers, &self.vehicle, offsets))
+            .lagging(self.origins.map(|origin| origin.map_or_else(P::zero, |time| time - time.value())))
             .of_mass(self.vehicle.mass)
             .burning(burn)
             .under(Canopies::of(&self.canopies, over_mass))

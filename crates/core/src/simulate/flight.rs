@@ -281,7 +281,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.apply_impulse(event, impulse);
         }
         self.warn_of(event, effect);
-        if !effect.is_none() {
+        if self.scenario.case().begins_phase(event) {
             self.enter(self.phase.after(event, self.scenario.case(), self.time, self.mass()))?;
         }
         self.log.event_records.push(EventRecord { event, before, after: self.instant() });
