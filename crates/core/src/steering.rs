@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use crate::control::Command;
+use crate::control::{Against, Command};
 
 /// The direction of the axis of the vehicle, along which its engines push it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,8 +63,19 @@ impl Steering {
         }
     }
 
-    /// Whether a command runs along the Mach number.
-    pub(crate) fn is_by_mach(&self) -> bool {
-        self.commands().is_some_and(|commands| commands.into_iter().any(Command::is_by_mach))
+    /// Whether a command runs along a quantity.
+    pub(crate) fn is_by(&self, against: Against) -> bool {
+        self.commands().into_iter().flatten().any(|command| command.against() == Some(against))
+    }
+
+    /// The same after events since which commands run have happened, each at a time, s; none of one that has not.
+    pub(crate) fn since(&self, time_of: impl Fn(usize) -> Option<f64>) -> Self {
+        match self {
+            Self::Program(Program { axes, pitch, yaw }) => {
+                let [pitch, yaw] = [pitch, yaw].map(|command| command.since(&time_of));
+                Self::Program(Program { axes: *axes, pitch, yaw })
+            }
+            other => other.clone(),
+        }
     }
 }

@@ -204,8 +204,8 @@ impl<P: Scalar> Forces<P> {
             Steering::Vertical => planet.shape.normal(&state.position),
             Steering::Velocity => self.axis_by_velocity(time, state, flow),
             Steering::Program(Program { axes, pitch, yaw }) => {
-                let pitch = flow.angle(pitch, self.mode.of(Switch::Pitch), time);
-                let yaw = flow.angle(yaw, self.mode.of(Switch::Yaw), time);
+                let pitch = flow.angle(pitch, self.mode.of(Switch::Pitch), self.clock(Switch::Pitch, time));
+                let yaw = flow.angle(yaw, self.mode.of(Switch::Yaw), self.clock(Switch::Yaw, time));
                 let ((sin_pitch, cos_pitch), (sin_yaw, cos_yaw)) = (pitch.sin_cos(), yaw.sin_cos());
                 let components = Vector3::new(cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch);
                 match axes {

@@ -300,7 +300,7 @@ impl AnalyticResponse {
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
         let mut warnings = Warning::of(&request, flight, analyses.unverified, Purpose::Theory);
-        if is_given(&request.control.bank_angle) {
+        if is_given(&request.control.core.bank_angle) {
             warnings.push(Warning::bank_left_out());
         }
         if request.wind.blows {

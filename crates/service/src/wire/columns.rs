@@ -127,7 +127,7 @@ const fn orbit_turn(name: &'static str, description: &'static str, value: fn(&Or
 }
 
 /// Every quantity, in the order of the answer.
-pub static COLUMNS: [Column; 44] = [
+pub static COLUMNS: [Column; 45] = [
     column("time", "Time since the start, s.", |point| point.time),
     column("altitude", "Altitude above the planet's surface along the radius vector, m.", |point| point.loads.altitude),
     column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
@@ -326,6 +326,16 @@ pub static COLUMNS: [Column; 44] = [
             "thrust",
             "Magnitude of the thrust, N; 0 while it is off; present if an event switches it on.",
             |point| point.thrust,
+        )
+    },
+    Column {
+        on_request: true,
+        ..column(
+            "energy",
+            "Energy relative to the rotating planet, J/kg: half the squared relative speed plus the gravitational \
+             potential (0 at infinity) minus half the squared speed of the planet's rotation at that place. In still \
+             air, only thrust increases it. Schedules against `energy` use it.",
+            |point| point.energy,
         )
     },
 ];

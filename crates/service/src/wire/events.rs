@@ -87,6 +87,8 @@ pub static QUANTITIES: Words<Quantity> = Words {
         word("periapsis_altitude", Quantity::PeriapsisAltitude, "Periapsis altitude, m")
             .unit("m")
             .doc("Periapsis altitude of the osculating orbit above the equatorial radius, m."),
+        word("eccentricity", Quantity::Eccentricity, "Eccentricity")
+            .doc("Eccentricity of the osculating orbit; 1 for motion along the radius vector."),
         word("inclination", Quantity::Inclination, "Inclination")
             .unit(ANGLE)
             .doc("Inclination of the osculating orbit to the equator."),
@@ -433,6 +435,25 @@ impl Event {
         unknown.then(|| Fault::new("/initial_state/sidereal_time", detail)).into_iter().collect()
     }
 
+    /// The place of the first event of a name in the list.
+    pub(super) fn place_of(name: &str, events: &[Self]) -> Option<usize> {
+        events.iter().position(|event| event.name.as_deref() == Some(name))
+    }
+
+    /// What is wrong with the name of an event, which must be that of one event alone; `pointer` is that of the name.
+    pub(super) fn name_fault(name: &str, pointer: String, events: &[Self]) -> Option<Fault> {
+        let named = events.iter().filter(|event| event.name.as_deref() == Some(name)).count();
+        let detail = match named {
+            0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
+            1 => return None,
+            _ => format!(
+                "must be the name of exactly one event, got {}, the name of {named} events",
+                shown(&json!(name))
+            ),
+        };
+        Some(Fault::new(pointer, detail))
+    }
+
     /// Parachutes that share a name, and names of those that are cut off and never deployed.
     pub(super) fn parachute_faults(events: &[Self]) -> Vec<Fault> {
         let mut faults = Vec::new();
@@ -495,8 +516,7 @@ impl Condition {
         match self {
             Self::Crossing(crossing) => (*crossing).into(),
             Self::After(name, delay) => {
-                let event = events.iter().position(|event| event.name.as_ref() == Some(name));
-                Trigger::After { event: event.unwrap_or(events.len()), delay: *delay }
+                Trigger::After { event: Event::place_of(name, events).unwrap_or(events.len()), delay: *delay }
             }
         }
     }
@@ -504,16 +524,7 @@ impl Condition {
     /// The name of an event that is waited for, which must be that of one event alone; `place` is that of the condition.
     pub(super) fn name_fault(&self, place: &str, events: &[Event]) -> Option<Fault> {
         let Self::After(name, _) = self else { return None };
-        let named = events.iter().filter(|event| event.name.as_ref() == Some(name)).count();
-        let detail = match named {
-            0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
-            1 => return None,
-            _ => format!(
-                "must be the name of exactly one event, got {}, the name of {named} events",
-                shown(&json!(name))
-            ),
-        };
-        Some(Fault::new(format!("{place}/event"), detail))
+        Event::name_fault(name, format!("{place}/event"), events)
     }
 }
 

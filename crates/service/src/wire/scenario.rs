@@ -1,6 +1,5 @@
 //! The request of `/simulate`: its parts, stop, output and solver.
 
-use reentry::control::Control;
 use reentry::scenario::{self, Bound, Case, Equations, Scenario, Solver, Stop};
 use reentry::trajectory::Sampling;
 use reentry::vehicle::Vehicle;
@@ -8,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::atmosphere::{Atmosphere, atmosphere};
 use super::columns::{AvailableQuantities, COLUMNS, Column};
-use super::control::control;
+use super::control::{ControlRequest, control};
 use super::description::{self, Object, Words, word};
 use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
@@ -41,7 +40,7 @@ pub struct SimulateRequest {
     pub density_factor: f64,
     pub wind: Wind,
     pub vehicle: Vehicle,
-    pub control: Control,
+    pub control: ControlRequest,
     pub heating: Option<Heating>,
     pub events: Vec<Event>,
     pub initial_state: State,
@@ -553,7 +552,7 @@ impl SimulateRequest {
             wind: self.wind.core.clone(),
             vehicle: self.vehicle.clone(),
             parts: Vec::new(),
-            control: self.control.clone(),
+            control: self.control.to_core(&self.events),
             steering: reentry::steering::Steering::default(),
             heating: self.heating.as_ref().map(|heating| heating.core),
             events: self.events.iter().map(|event| event.to_core(&self.events, &references)).collect(),
@@ -581,7 +580,8 @@ impl SimulateRequest {
         let events = self.events.iter().enumerate();
         let events = events.map(|(index, event)| (format!("/events/{index}/when"), &event.when));
         let stops = self.stop_when.iter().enumerate().map(|(index, when)| (format!("/stop/when/{index}"), when));
-        events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, &self.events)).collect()
+        let conditions = events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, &self.events));
+        conditions.chain(self.control.name_faults(&self.events)).collect()
     }
 }
 
