@@ -1,6 +1,6 @@
 //! Steering: where the axis of a vehicle points, and with it the thrust of its engines.
 
-use nalgebra::Matrix3;
+use nalgebra::Rotation3;
 
 use crate::control::{Against, Command};
 
@@ -21,7 +21,7 @@ pub enum Steering {
     /// A. E. Bryson and Y.-C. Ho, Applied Optimal Control, 1975, section 2.4.
     LinearTangent {
         /// As those of a program, in inertial space.
-        axes: Matrix3<f64>,
+        axes: Rotation3<f64>,
         /// At t = 0.
         a: f64,
         /// 1/s.
@@ -44,7 +44,7 @@ pub struct Program {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProgramAxes {
     /// Three that stay in inertial space, while the planet turns; as the columns of their planet-fixed components at t = 0.
-    Inertial(Matrix3<f64>),
+    Inertial(Rotation3<f64>),
     /// North, east and away from the planet's centre.
     Local,
 }

@@ -9,7 +9,6 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
-use super::control::is_given;
 use super::description::{self, Object, Words, word};
 use super::dispersions::Covariance;
 use super::reader::Fault;
@@ -300,7 +299,7 @@ impl AnalyticResponse {
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
         let mut warnings = Warning::of(&request, flight, analyses.unverified, Purpose::Theory);
-        if is_given(&request.control.core.bank_angle) {
+        if request.control.bank_angle.is_given() {
             warnings.push(Warning::bank_left_out());
         }
         if request.wind.blows {

@@ -10,6 +10,7 @@ use super::description::{AngleOrObject, Field, Object, WordOrObject, Words, word
 use super::events::Event;
 use super::reader::{Fault, MOST_ENTRIES};
 use super::schema::{bounds, is};
+use super::steering::{Steering, steering};
 
 /// What a schedule runs along.
 const AGAINST: Words<Against> = Words {
@@ -35,13 +36,24 @@ const VARIABLE: WordOrObject = WordOrObject {
     doc: "Independent variable of a schedule: a word for a quantity of the flight, or the time since an event.",
 };
 
-/// How a vehicle is flown, with the names of the events since which its schedules run.
+/// How a vehicle is flown.
 #[derive(Clone, Debug)]
 pub struct ControlRequest {
-    /// The same for the core, but for the events.
-    pub core: Control,
-    /// Of bank angle and angle of attack the name of the event since which it runs, if it does.
-    since: [Option<String>; 2],
+    /// Bank angle.
+    pub bank_angle: CommandRequest,
+    /// Angle of attack.
+    pub angle_of_attack: CommandRequest,
+    /// Where the axis of a vehicle with parts points; none where nothing is said.
+    pub steering: Option<Steering>,
+}
+
+/// A command of an angle, with the name of the event since which it runs.
+#[derive(Clone, Debug)]
+pub struct CommandRequest {
+    /// The same for the core, but for the event.
+    pub core: Command,
+    /// The name of the event since which it runs, if it does.
+    since: Option<String>,
 }
 
 /// What a schedule of a request runs along.
@@ -56,33 +68,43 @@ impl From<Against> for Variable {
     }
 }
 
-/// The fields of the commands, in the order of [`ControlRequest::since`].
-const COMMANDS: [&str; 2] = ["bank_angle", "angle_of_attack"];
-
-impl ControlRequest {
-    /// The core's control; a schedule since an event of no name in the list runs since one beyond its end.
-    pub(super) fn to_core(&self, events: &[Event]) -> Control {
-        let command = |command: &Command, since: &Option<String>| match (command, since) {
+impl CommandRequest {
+    /// The core's command; a schedule since an event of no name in the list runs since one beyond its end.
+    pub(super) fn to_core(&self, events: &[Event]) -> Command {
+        match (&self.core, &self.since) {
             (Command::Schedule(schedule), Some(name)) => {
                 let event = Event::place_of(name, events).unwrap_or(events.len());
                 Command::Schedule(Arc::new(schedule.along(Against::Since(event))))
             }
             (other, _) => other.clone(),
-        };
-        let Control { bank_angle, angle_of_attack } = &self.core;
-        Control {
-            bank_angle: command(bank_angle, &self.since[0]),
-            angle_of_attack: command(angle_of_attack, &self.since[1]),
         }
+    }
+
+    /// What is wrong with the name of the event since which it runs; `pointer` is that of the command.
+    pub(super) fn name_fault(&self, pointer: String, events: &[Event]) -> Option<Fault> {
+        Event::name_fault(self.since.as_ref()?, format!("{pointer}/against/since"), events)
+    }
+
+    /// Whether it is anything but 0 all the time.
+    pub(super) fn is_given(&self) -> bool {
+        !matches!(self.core, Command::Constant(angle) if angle == 0.0)
+    }
+}
+
+impl ControlRequest {
+    /// The core's control, but for the steering.
+    pub(super) fn to_core(&self, events: &[Event]) -> Control {
+        let Self { bank_angle, angle_of_attack, .. } = self;
+        Control { bank_angle: bank_angle.to_core(events), angle_of_attack: angle_of_attack.to_core(events) }
     }
 
     /// Names of events that are not those of one event alone.
     pub(super) fn name_faults(&self, events: &[Event]) -> Vec<Fault> {
-        let named = COMMANDS.into_iter().zip(&self.since);
-        let fault = |(field, name): (&str, &Option<String>)| {
-            Event::name_fault(name.as_ref()?, format!("/control/{field}/against/since"), events)
-        };
-        named.filter_map(fault).collect()
+        let Self { bank_angle, angle_of_attack, steering } = self;
+        let of_steering = steering.iter().flat_map(|it| it.name_faults("/control/steering", events));
+        let named = [("bank_angle", bank_angle), ("angle_of_attack", angle_of_attack)];
+        let faults = named.map(|(field, command)| command.name_fault(format!("/control/{field}"), events));
+        faults.into_iter().flatten().chain(of_steering).collect()
     }
 }
 
@@ -106,7 +128,10 @@ const COMMAND: AngleOrObject = AngleOrObject {
 
 /// How the vehicle is flown.
 pub(super) fn control(object: &mut Object) -> Option<ControlRequest> {
-    object.named("Control", "Bank angle and angle of attack during the flight; each is a constant or a schedule.");
+    object.named(
+        "Control",
+        "Bank angle, angle of attack and steering during the flight; each angle is a constant or a schedule.",
+    );
     let bank_angle = command(object.field("bank_angle", "Bank angle").doc(
         "Bank angle. At 0, lift points upward in the plane of radius and velocity; a positive angle tilts it to the \
          left of the flight direction.",
@@ -116,23 +141,30 @@ pub(super) fn control(object: &mut Object) -> Option<ControlRequest> {
             .field("angle_of_attack", "Angle of attack")
             .doc("Angle of attack. Only the coefficients of an `alpha_mach_table` depend on it."),
     );
-    let ((bank_angle, bank_since), (angle_of_attack, attack_since)) = (bank_angle?, angle_of_attack?);
-    Some(ControlRequest { core: Control { bank_angle, angle_of_attack }, since: [bank_since, attack_since] })
+    let steering = object
+        .field("steering", "Steering")
+        .doc(
+            "Direction of the vehicle's axis, along which its engines push. It requires `vehicle.parts`. Default: \
+             `velocity`.",
+        )
+        .optional()
+        .object(steering);
+    Some(ControlRequest { bank_angle: bank_angle?, angle_of_attack: angle_of_attack?, steering })
 }
 
-/// A command, and the name of the event since which it runs.
-fn command(field: Field) -> Option<(Command, Option<String>)> {
-    let constant = |angle| (Command::Constant(angle), None);
+/// A command that is 0 where it is left out.
+pub(super) fn command(field: Field) -> Option<CommandRequest> {
+    required_command(field.default(0.0))
+}
+
+/// A command.
+pub(super) fn required_command(field: Field) -> Option<CommandRequest> {
+    let constant = |angle| CommandRequest { core: Command::Constant(angle), since: None };
     let schedule = |object: &mut Object| {
         let (schedule, since) = schedule(object)?;
-        Some((Command::Schedule(Arc::new(schedule)), since))
+        Some(CommandRequest { core: Command::Schedule(Arc::new(schedule)), since })
     };
-    field.default(0.0).angle_or(&COMMAND, Bound::TURN, constant, schedule)
-}
-
-/// Whether a command is anything but 0 all the time.
-pub(super) fn is_given(command: &Command) -> bool {
-    !matches!(command, Command::Constant(angle) if *angle == 0.0)
+    field.angle_or(&COMMAND, Bound::TURN, constant, schedule)
 }
 
 fn schedule(object: &mut Object) -> Option<(Schedule, Option<String>)> {

@@ -10,7 +10,6 @@ use reentry::vehicle::Aerodynamics;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::control::is_given;
 use super::epoch::Epoch;
 use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
@@ -63,7 +62,7 @@ impl Warning {
         let later = request.events.iter().filter_map(|event| event.then.core.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
         let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
-        if is_given(&request.control.core.angle_of_attack) && !by_angle_of_attack {
+        if request.control.angle_of_attack.is_given() && !by_angle_of_attack {
             let detail = "control.angle_of_attack has no effect: only an alpha_mach_table depends on it";
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
