@@ -122,7 +122,8 @@ impl Control {
 
     /// The same after the events since which commands run have happened, each at its time, s; none where it has not, or where there is none.
     pub(crate) fn since(&self, [bank_angle, angle_of_attack]: [Option<f64>; 2]) -> Self {
-        let since = |command: &Command, time: Option<f64>| time.map_or_else(|| command.clone(), |time| command.since(time));
+        let since =
+            |command: &Command, time: Option<f64>| time.map_or_else(|| command.clone(), |time| command.since(time));
         Self {
             bank_angle: since(&self.bank_angle, bank_angle),
             angle_of_attack: since(&self.angle_of_attack, angle_of_attack),
@@ -176,7 +177,11 @@ impl Schedule {
         Self {
             against: Against::Time,
             corners: self.corners.iter().map(|corner| corner + start).collect(),
-            segments: self.segments.iter().map(|segment| Stretch { origin: segment.origin + start, ..*segment }).collect(),
+            segments: self
+                .segments
+                .iter()
+                .map(|segment| Stretch { origin: segment.origin + start, ..*segment })
+                .collect(),
         }
     }
 

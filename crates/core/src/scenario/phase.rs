@@ -156,7 +156,8 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         });
         let canopies = self.canopies.iter().filter(stays).copied().chain(deployed).collect();
         let aerodynamics_of = effect.aerodynamics.as_ref().map(|_| event).or(self.aerodynamics_of);
-        let [bank_angle, angle_of_attack] = numbers.case().control.commands().map(|command| command.event() == Some(event));
+        let [bank_angle, angle_of_attack] =
+            numbers.case().control.commands().map(|command| command.event() == Some(event));
         let origin = |begins: bool, before: Option<P>| if begins { Some(time) } else { before };
         let origins = [origin(bank_angle, self.origins[0]), origin(angle_of_attack, self.origins[1])];
         Self { since: time, vehicle, aerodynamics_of, thrust, thrust_of, canopies, origins }
