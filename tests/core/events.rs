@@ -61,7 +61,6 @@ fn of(quantity: Quantity, point: &FlightPoint) -> f64 {
         Quantity::PeriapsisAltitude => orbit(point).semi_major_axis() * (1.0 - orbit(point).0.eccentricity) - RADIUS,
         Quantity::Eccentricity => orbit(point).0.eccentricity,
         Quantity::Inclination => orbit(point).0.inclination,
-        Quantity::Eccentricity => orbit(point).0.eccentricity,
         Quantity::HeatFlux => point.loads.heat_flux.unwrap().total(),
         Quantity::HeatLoad => point.heat_load.unwrap(),
         Quantity::WallTemperature => point.wall_temperature.unwrap(),
