@@ -235,7 +235,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         // Those of the coefficients belong to the vehicle of the start.
         let offsets = if self.aerodynamics_of.is_none() { [lift, drag, bank] } else { [P::zero(), P::zero(), bank] };
         let models = models_of.models_of(&self.vehicle);
-        let control = models.control.since(self.origins.map(|origin| origin.map(|time| time.value())));
+        let control = models.control.since(self.origins.map(|origin| origin.map(P::value)));
         Forces::new(Models { control, ..models }, Case::parameters_of(numbers, &self.vehicle, offsets))
             .lagging(self.origins.map(|origin| origin.map_or_else(P::zero, |time| time - time.value())))
             .of_mass(self.vehicle.mass)
