@@ -152,10 +152,10 @@ impl<'a> Ephemeris<'a> {
         let mut segments = Vec::new();
         let mut first = flight.initial();
         for Jump { before, after } in jumps(flight) {
-            segments.push(Segment::new(first, rows.points(), before));
+            segments.push(Segment::new(&first, rows.points(), &before));
             first = after;
         }
-        segments.push(Segment::new(first, rows.points(), flight.last()));
+        segments.push(Segment::new(&first, rows.points(), &flight.last()));
         // A jump at the start or at the end, or a flight of no duration, leaves a segment of one instant.
         let lasts = |segment: &Segment| frame.utc(&segment.first) < frame.utc(&segment.last);
         if segments.iter().any(lasts) {
@@ -233,10 +233,10 @@ fn jumps(flight: &Trajectory) -> Vec<Jump> {
 }
 
 impl<'a> Segment<'a> {
-    fn new(first: FlightPoint, rows: &'a [FlightPoint], last: FlightPoint) -> Self {
+    fn new(first: &FlightPoint, rows: &'a [FlightPoint], last: &FlightPoint) -> Self {
         let begin = rows.partition_point(|row| row.time <= first.time);
         let end = rows.partition_point(|row| row.time < last.time);
-        Self { first, between: rows.get(begin..end).unwrap_or_default(), last }
+        Self { first: *first, between: rows.get(begin..end).unwrap_or_default(), last: *last }
     }
 
     /// The points whose dates, to the microsecond, grow.
