@@ -100,7 +100,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
         for (path, method, formats) in [
-            ("/simulate", "post", json!(["json", "csv", "geojson", "kml", "czml"])),
+            ("/simulate", "post", json!(["json", "csv", "geojson", "kml", "czml", "oem"])),
             ("/analytic", "post", json!(["json", "csv"])),
             ("/simulate/batch", "post", json!(["ndjson"])),
             ("/convert", "post", json!(["json"])),
