@@ -2,7 +2,7 @@
 
 use std::io::{self, ErrorKind, Write};
 use std::rc::Rc;
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use reentry::Interrupt;
 use reentry::integrate::Statistics;
@@ -20,6 +20,8 @@ use crate::wire::analytic::{AnalyticResponse, TheoryRequest};
 use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::dispersions::{Covariance, Dispersion};
+use crate::wire::ephemeris::{Ephemeris, MessageFrame, write_oem};
+use crate::wire::epoch::{Epoch, Utc};
 use crate::wire::events::Event;
 use crate::wire::numbers::Varied;
 use crate::wire::outputs::{AvailableWhereMoved, OutputNumber};
@@ -46,8 +48,10 @@ pub struct Answer {
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
-    if let Some(fault) = globe_fault(&request.request.planet, format) {
-        return Err(ApiError::Invalid(vec![fault]));
+    let (planet, epoch) = (request.request.planet, request.request.epoch);
+    let faults = faults_of_format(format, &planet, epoch);
+    if !faults.is_empty() {
+        return Err(ApiError::Invalid(faults));
     }
     let start = Instant::now();
     let flight = fly(&request.scenario, interrupt)?;
@@ -61,12 +65,17 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
     let analyses = analyses(&request, &flight, &mut held)?;
     let response = SimulateResponse::new(request, &flight, points, analyses, elapsed);
     let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
+    let ephemeris = |rows| {
+        let frame = MessageFrame::of(&planet, epoch).map_err(ApiError::Invalid)?;
+        Ephemeris::new(&response, rows, &flight, frame).map_err(|fault| ApiError::Invalid(vec![fault]))
+    };
     let mut out = Written::new(held);
     let written = match (format, &response.trajectory) {
         (Format::Csv, Some(rows)) => rows.write_csv(&mut out),
         (Format::Geojson, Some(rows)) => track(rows)?.write_geojson(&mut out),
         (Format::Kml, Some(rows)) => track(rows)?.write_kml(&mut out),
         (Format::Czml, Some(rows)) => track(rows)?.write_czml(&mut out),
+        (Format::Oem, Some(rows)) => write_oem(&[ephemeris(rows)?], Utc::of_clock(SystemTime::now()), &mut out),
         _ => serde_json::to_writer(&mut out, &response),
     };
     Ok(Answer { body: out.whole(written)?, work })
@@ -83,16 +92,17 @@ fn requested_output(format: Format) -> RequestedOutput {
     match format {
         Format::Json | Format::Ndjson | Format::Text => RequestedOutput::Answer,
         Format::Csv => RequestedOutput::Rows,
-        Format::Geojson | Format::Kml | Format::Czml => RequestedOutput::Map,
+        Format::Geojson | Format::Kml | Format::Czml | Format::Oem => RequestedOutput::Map,
     }
 }
 
-/// Why viewers of the format would place flights on the planet on another globe; none where they do not.
-fn globe_fault(planet: &Planet, format: Format) -> Option<Fault> {
+/// Why the format cannot hold flights on the planet from the epoch on, or its viewers would place them on another globe.
+fn faults_of_format(format: Format, planet: &Planet, epoch: Option<Epoch>) -> Vec<Fault> {
     match format {
-        Format::Kml => Track::kml_fault(planet),
-        Format::Czml => Track::czml_fault(planet),
-        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson | Format::Text => None,
+        Format::Kml => Track::kml_fault(planet).into_iter().collect(),
+        Format::Czml => Track::czml_fault(planet).into_iter().collect(),
+        Format::Oem => MessageFrame::of(planet, epoch).err().unwrap_or_default(),
+        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson | Format::Text => Vec::new(),
     }
 }
 

@@ -30,6 +30,7 @@ pub mod batch;
 pub mod columns;
 pub mod convert;
 pub mod dispersions;
+pub mod ephemeris;
 pub mod numbers;
 pub mod outputs;
 pub mod scenario;
