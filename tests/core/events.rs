@@ -60,6 +60,7 @@ fn of(quantity: Quantity, point: &FlightPoint) -> f64 {
         Quantity::ApoapsisAltitude => orbit(point).semi_major_axis() * (1.0 + orbit(point).0.eccentricity) - RADIUS,
         Quantity::PeriapsisAltitude => orbit(point).semi_major_axis() * (1.0 - orbit(point).0.eccentricity) - RADIUS,
         Quantity::Inclination => orbit(point).0.inclination,
+        Quantity::Eccentricity => orbit(point).0.eccentricity,
         Quantity::HeatFlux => point.loads.heat_flux.unwrap().total(),
         Quantity::HeatLoad => point.heat_load.unwrap(),
         Quantity::WallTemperature => point.wall_temperature.unwrap(),

@@ -35,6 +35,10 @@ pub enum Against {
     Speed,
     /// The speed relative to the air over that of sound.
     Mach,
+    /// That relative to the planet, of [`Planet::energy`](crate::Planet::energy), J/kg: in still air it never grows but by thrust.
+    Energy,
+    /// Since the event of this place in the list happened, s; until then the value of the first entry holds.
+    Since(usize),
 }
 
 /// What a schedule does between its entries.
@@ -69,13 +73,34 @@ impl Command {
     pub(crate) fn corners(&self) -> Option<(Against, &[f64])> {
         match self {
             Self::Constant(_) => None,
+            // What has not happened turns nothing.
+            Self::Schedule(schedule) if matches!(schedule.against, Against::Since(_)) => None,
             Self::Schedule(schedule) => Some((schedule.against, &schedule.corners)),
         }
     }
 
-    /// Whether it runs along the Mach number.
-    pub(crate) fn is_by_mach(&self) -> bool {
-        matches!(self, Self::Schedule(schedule) if schedule.against == Against::Mach)
+    /// What it runs along; nothing where it is constant.
+    pub fn against(&self) -> Option<Against> {
+        match self {
+            Self::Constant(_) => None,
+            Self::Schedule(schedule) => Some(schedule.against),
+        }
+    }
+
+    /// The event since which it runs, if it does.
+    pub(crate) fn event(&self) -> Option<usize> {
+        match self.against() {
+            Some(Against::Since(event)) => Some(event),
+            _ => None,
+        }
+    }
+
+    /// The same after the event since which it runs, if there is one, has happened at a time, s; none where it has not.
+    pub(crate) fn since(&self, time_of: impl Fn(usize) -> Option<f64>) -> Self {
+        match (self, self.event().and_then(time_of)) {
+            (Self::Schedule(schedule), Some(time)) => Self::Schedule(Arc::new(schedule.in_time_from(time))),
+            (other, _) => other.clone(),
+        }
     }
 }
 
@@ -83,6 +108,22 @@ impl Control {
     /// Constant angles: the bank angle, rad, and no angle of attack.
     pub fn banked(bank_angle: f64) -> Self {
         Self { bank_angle: Command::Constant(bank_angle), angle_of_attack: Command::Constant(0.0) }
+    }
+
+    /// Both commands: the bank angle, and the angle of attack.
+    pub(crate) fn commands(&self) -> [&Command; 2] {
+        [&self.bank_angle, &self.angle_of_attack]
+    }
+
+    /// Whether a command runs along a quantity.
+    pub(crate) fn is_by(&self, against: Against) -> bool {
+        self.commands().into_iter().any(|command| command.against() == Some(against))
+    }
+
+    /// The same after events since which commands run have happened, each at a time, s; none of one that has not.
+    pub(crate) fn since(&self, time_of: impl Fn(usize) -> Option<f64>) -> Self {
+        let [bank_angle, angle_of_attack] = self.commands().map(|command| command.since(&time_of));
+        Self { bank_angle, angle_of_attack }
     }
 }
 
@@ -119,6 +160,25 @@ impl Schedule {
     pub fn turned_by(&self, angle: f64) -> Self {
         let turned = |segment: &Stretch| Stretch { base: segment.base + angle, ..*segment };
         Self { segments: self.segments.iter().map(turned).collect(), ..self.clone() }
+    }
+
+    /// The same schedule against another quantity.
+    #[must_use]
+    pub fn along(&self, against: Against) -> Self {
+        Self { against, ..self.clone() }
+    }
+
+    /// The same schedule against the time since the start, where its own time begins at one, s.
+    fn in_time_from(&self, start: f64) -> Self {
+        Self {
+            against: Against::Time,
+            corners: self.corners.iter().map(|corner| corner + start).collect(),
+            segments: self
+                .segments
+                .iter()
+                .map(|segment| Stretch { origin: segment.origin + start, ..*segment })
+                .collect(),
+        }
     }
 
     /// The angle, rad, where the quantity has a value, by the formula of a segment: 0 before the first corner, 1 after it, and so on.

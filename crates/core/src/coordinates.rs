@@ -17,6 +17,7 @@ mod earth;
 mod flight_path;
 mod geodetic;
 mod great_circle;
+mod horizon;
 mod inertial;
 mod inertial_flight_path;
 mod orbital_elements;
@@ -28,6 +29,7 @@ pub use earth::{
 pub use flight_path::FlightPath;
 pub use geodetic::{Geodetic, latitude_and_altitude};
 pub use great_circle::{GreatCircle, ground_rate};
+pub use horizon::{horizon, launch_horizon};
 pub use inertial::{Inertial, about_pole};
 pub use inertial_flight_path::InertialFlightPath;
 pub use orbital_elements::{NoElements, OrbitShape, OrbitalElements, UndefinedElements, true_anomaly};

@@ -99,6 +99,8 @@ pub enum Quantity {
     ApoapsisAltitude,
     /// Of the osculating orbit, above the equatorial radius, m.
     PeriapsisAltitude,
+    /// Of the osculating orbit; 1 for motion along the radius vector.
+    Eccentricity,
     /// Of the osculating orbit to the equator, rad.
     Inclination,
     /// Into the stagnation point, W/m².
@@ -204,7 +206,7 @@ pub enum ThrustCommand {
 
 impl Quantity {
     /// All of them.
-    pub(crate) const ALL: [Self; 22] = [
+    pub(crate) const ALL: [Self; 23] = [
         Self::Time,
         Self::Altitude,
         Self::Speed,
@@ -218,6 +220,7 @@ impl Quantity {
         Self::SpecificEnergy,
         Self::ApoapsisAltitude,
         Self::PeriapsisAltitude,
+        Self::Eccentricity,
         Self::Inclination,
         Self::HeatFlux,
         Self::HeatLoad,

@@ -72,6 +72,9 @@ pub struct Forces<P = f64> {
     canopies: Option<Canopies<P>>,
     /// Whether the vehicle is held on the ground: it stays where it is, and burns.
     held: bool,
+    /// By how much later than in the models the times begin from which bank angle, angle of attack, pitch and yaw run, s: zero, with derivatives where
+    /// they begin with an event whose time varies.
+    lags: [P; 4],
     /// The segment of each piecewise model that is in use.
     mode: ModelMode,
     /// Whether any model is piecewise.
@@ -83,6 +86,8 @@ pub struct Forces<P = f64> {
     by_mach: bool,
     /// Whether the angle of attack is that of the axis of the vehicle, as it is steered, to the velocity relative to the air.
     by_axis: bool,
+    /// Whether angles depend on the energy.
+    by_energy: bool,
     cache: LookupCache,
 }
 
@@ -182,10 +187,20 @@ struct Flow<S: nalgebra::Scalar> {
     ground_speed: S,
     /// The density over that of the parameters, kg/m³, and the Mach number, where something depends on it.
     density_and_mach: Option<(S, S)>,
+    /// Relative to the planet, J/kg, where something depends on it.
+    energy: Option<S>,
     /// The mass at the start of the phase over the mass, where a thrust acts and the mass is integrated.
     mass_ratio: Option<S>,
     /// Where the axis of the vehicle points, where the air asks for it.
     axis: Option<Vector3<S>>,
+}
+
+/// What depends on more of a place than its altitude, where something asks for it.
+struct Local<S> {
+    /// Density, kg/m³, and speed of sound, m/s, of an atmosphere that depends on more than the altitude.
+    air: Option<(S, S)>,
+    /// Of gravity and of the centrifugal force, J/kg, where something depends on the energy.
+    potential: Option<S>,
 }
 
 /// What a unit of density does to the vehicle, at full lift: accelerations over the density, m⁴/(kg s²).
@@ -202,6 +217,7 @@ impl<P: Scalar> Forces<P> {
         let area_over_mass = parameters.reference_area * parameters.mass.recip();
         let sin_cos_bank = parameters.bank_angle.sin_cos();
         let by_mach = models.depend_on_mach();
+        let by_energy = models.is_by(Against::Energy);
         let of_thesis = models.are_of_thesis();
         let by_axis = models.steering.is_attitude() && matches!(models.aerodynamics, Aerodynamics::AlphaMachTable(_));
         let (burn, canopies, held) = (None, None, false);
@@ -215,11 +231,13 @@ impl<P: Scalar> Forces<P> {
             burn,
             canopies,
             held,
+            lags: [P::zero(); 4],
             mode,
             has_switches,
             of_thesis,
             by_mach,
             by_axis,
+            by_energy,
             cache,
         };
         forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
@@ -250,6 +268,12 @@ impl<P: Scalar> Forces<P> {
     #[must_use]
     pub fn held(self, held: bool) -> Self {
         Self { of_thesis: self.of_thesis && !held, held, ..self }
+    }
+
+    /// The same forces where the times from which the angles run begin later, s.
+    #[must_use]
+    pub(crate) fn lagging(self, lags: [P; 4]) -> Self {
+        Self { lags, ..self }
     }
 
     /// The acceleration relative to the rotating planet, m/s².
@@ -401,13 +425,13 @@ impl<P: Scalar> Forces<P> {
     /// The air that meets a vehicle in a state.
     #[inline(always)]
     fn flow<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
-        let local = self.local_air::<THESIS, _>(time, || state.position);
+        let local = self.local::<THESIS, _>(time, || state.position);
         self.flow_in::<THESIS, _>(time, local, state)
     }
 
-    /// The air that meets a vehicle in a state, whose density and speed of sound are given where they depend on more than the altitude.
+    /// The air that meets a vehicle in a state, with what depends on more of its place than the altitude.
     #[inline(always)]
-    fn flow_in<const THESIS: bool, S: Over<P>>(&self, time: S, local: Option<(S, S)>, state: &State<S>) -> Flow<S> {
+    fn flow_in<const THESIS: bool, S: Over<P>>(&self, time: S, local: Local<S>, state: &State<S>) -> Flow<S> {
         let mut flow = self.flow_without_axis::<THESIS, _>(local, state);
         if !THESIS && self.by_axis {
             flow.axis = Some(self.axis(time, state, &flow));
@@ -416,7 +440,7 @@ impl<P: Scalar> Forces<P> {
     }
 
     #[inline(always)]
-    fn flow_without_axis<const THESIS: bool, S: Over<P>>(&self, local: Option<(S, S)>, state: &State<S>) -> Flow<S> {
+    fn flow_without_axis<const THESIS: bool, S: Over<P>>(&self, local: Local<S>, state: &State<S>) -> Flow<S> {
         let State { position, velocity, .. } = state;
         let altitude = self.models.planet.shape.altitude(position);
         match self.wind::<THESIS, _>(altitude) {
@@ -442,35 +466,37 @@ impl<P: Scalar> Forces<P> {
         }
     }
 
-    /// Density, kg/m³, and speed of sound, m/s, of an atmosphere that depends on more than the altitude, at a time, s, and a planet-fixed
-    /// position, m; none of the others.
+    /// What depends on more of a planet-fixed position, m, than its altitude, at a time, s.
     #[inline(always)]
-    fn local_air<const THESIS: bool, S: Over<P>>(
-        &self,
-        time: S,
-        position: impl FnOnce() -> Vector3<S>,
-    ) -> Option<(S, S)> {
-        match &self.models.atmosphere {
+    fn local<const THESIS: bool, S: Over<P>>(&self, time: S, position: impl Fn() -> Vector3<S>) -> Local<S> {
+        let air = match &self.models.atmosphere {
             Atmosphere::Nrlmsise00(model) if !THESIS => {
                 let air = model.sample(self.models.planet.shape.semi_axes(), time, &position());
                 Some((air.density, air.speed_of_sound.unwrap_or_else(S::one)))
             }
             _ => None,
-        }
+        };
+        Local { air, potential: if THESIS { None } else { self.potential_where_asked(position) } }
     }
 
-    /// The air at an altitude, m, whose density and speed of sound are given where they depend on more than that, and that meets a vehicle of a
-    /// mass, kg, in the directions of its velocity relative to the air, at a speed relative to the planet, m/s.
+    /// The potential of gravity and of the centrifugal force at a planet-fixed position, m, in J/kg, where something depends on the energy.
+    #[inline(always)]
+    fn potential_where_asked<S: Over<P>>(&self, position: impl FnOnce() -> Vector3<S>) -> Option<S> {
+        self.by_energy.then(|| self.models.planet.potential_at_rest(&position()))
+    }
+
+    /// The air at an altitude, m, with what depends on more of the place than that, which meets a vehicle of a mass, kg, in the directions of its
+    /// velocity relative to the air, at a speed relative to the planet, m/s.
     #[inline(always)]
     fn flow_of<const THESIS: bool, S: Over<P>>(
         &self,
         altitude: S,
-        local: Option<(S, S)>,
+        local: Local<S>,
         directions: Directions<S>,
         ground_speed: S,
         mass: Option<S>,
     ) -> Flow<S> {
-        let known = local.filter(|_| !THESIS).or_else(|| {
+        let known = local.air.filter(|_| !THESIS).or_else(|| {
             (!THESIS && self.by_mach).then(|| {
                 let segment = self.mode.of(Switch::Atmosphere);
                 self.models.atmosphere.density_and_sound(segment, altitude, &self.cache.atmosphere)
@@ -478,7 +504,8 @@ impl<P: Scalar> Forces<P> {
         });
         let density_and_mach = known.map(|(density, sound)| (density, directions.speed * sound.recip()));
         let mass_ratio = if THESIS { None } else { self.mass_ratio(mass) };
-        Flow { altitude, directions, ground_speed, density_and_mach, mass_ratio, axis: None }
+        let energy = local.potential.map(|potential| ground_speed * ground_speed * 0.5 + potential);
+        Flow { altitude, directions, ground_speed, density_and_mach, energy, mass_ratio, axis: None }
     }
 
     /// The wind at an altitude, m, to the east and to the north, m/s.
@@ -559,7 +586,8 @@ impl<P: Scalar> Forces<P> {
     /// σ, rad.
     #[inline(always)]
     fn bank_angle<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        flow.angle(&self.models.control.bank_angle, self.mode.of(Switch::BankAngle), time) + self.parameters.bank_angle
+        let clock = self.clock(Switch::BankAngle, time);
+        flow.angle(&self.models.control.bank_angle, self.mode.of(Switch::BankAngle), clock) + self.parameters.bank_angle
     }
 
     /// α, rad: as it is commanded, or the angle between the axis and the velocity relative to the air.
@@ -577,7 +605,20 @@ impl<P: Scalar> Forces<P> {
     /// α, rad, as it is commanded.
     #[inline(always)]
     fn commanded_angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
-        flow.angle(&self.models.control.angle_of_attack, self.mode.of(Switch::AngleOfAttack), time)
+        let clock = self.clock(Switch::AngleOfAttack, time);
+        flow.angle(&self.models.control.angle_of_attack, self.mode.of(Switch::AngleOfAttack), clock)
+    }
+
+    /// The time by which something switches, s: that by which angles run begins with an event, where their schedules say so.
+    #[inline(always)]
+    fn clock<S: Over<P>>(&self, switch: Switch, time: S) -> S {
+        match switch {
+            Switch::BankAngle => time + -self.lags[0],
+            Switch::AngleOfAttack => time + -self.lags[1],
+            Switch::Pitch => time + -self.lags[2],
+            Switch::Yaw => time + -self.lags[3],
+            _ => time,
+        }
     }
 }
 
@@ -600,11 +641,12 @@ impl Models {
 
     /// Whether coefficients or angles depend on the Mach number.
     fn depend_on_mach(&self) -> bool {
-        let Control { bank_angle, angle_of_attack } = &self.control;
-        self.aerodynamics.is_by_mach()
-            || bank_angle.is_by_mach()
-            || angle_of_attack.is_by_mach()
-            || self.steering.is_by_mach()
+        self.aerodynamics.is_by_mach() || self.is_by(Against::Mach)
+    }
+
+    /// Whether an angle runs along a quantity.
+    fn is_by(&self, against: Against) -> bool {
+        self.control.is_by(against) || self.steering.is_by(against)
     }
 }
 
@@ -632,6 +674,9 @@ impl<S: Scalar> Flow<S> {
             Against::Altitude => self.altitude,
             Against::Speed => self.ground_speed,
             Against::Mach => self.mach(),
+            Against::Energy => self.energy.unwrap_or_else(S::zero),
+            // Before the event the value of the first entry holds, whatever the time.
+            Against::Since(_) => S::zero(),
         }
     }
 }

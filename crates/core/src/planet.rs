@@ -205,4 +205,25 @@ impl Planet {
             }
         }
     }
+
+    /// The potential of gravity and of the centrifugal force at a planet-fixed position, m, in J/kg.
+    pub(crate) fn potential_at_rest<S: Scalar>(&self, position: &Vector3<S>) -> S {
+        let from_axis_squared = position.x * position.x + position.y * position.y;
+        self.potential(position) - from_axis_squared * (0.5 * self.rotation_rate * self.rotation_rate)
+    }
+
+    /// The energy of a mass relative to the rotating planet, at a planet-fixed position, m, at a speed relative to it, m/s, in J/kg.
+    ///
+    /// ```text
+    /// E = V²/2 - ω² (x² + y²)/2 + U,   dE/dt = (D + L + T)·V/m
+    /// ```
+    ///
+    /// with the potential U of gravity, negative and zero at infinity. Without wind, lift and the Coriolis force are across the velocity: then E
+    /// never grows but by thrust.
+    ///
+    /// # Reference
+    /// Jameson 2006, equation 29, integrated once.
+    pub fn energy<S: Scalar>(&self, position: &Vector3<S>, speed: S) -> S {
+        speed * speed * 0.5 + self.potential_at_rest(position)
+    }
 }

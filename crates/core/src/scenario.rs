@@ -17,7 +17,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::atmosphere::Atmosphere;
-use crate::control::{Command, Control};
+use crate::control::{Against, Command, Control};
 use crate::coordinates::{GreatCircle, PlanetFixed};
 use crate::event::{Condition, Direction, Event, Quantity, ThrustCommand, Trigger};
 use crate::heating::{Heating, Stagnation};
@@ -543,6 +543,18 @@ impl Case {
         !self.events.is_empty() || !self.stop.when.is_empty() || self.stop.ceiling.is_some()
     }
 
+    /// Whether a phase of the flight begins with an event: it changes something, or an angle runs since then.
+    pub(crate) fn begins_phase(&self, event: usize) -> bool {
+        !self.events[event].then.is_none() || self.has_schedules_since(event)
+    }
+
+    /// Whether an angle runs since an event, at any time of the flight.
+    pub(crate) fn has_schedules_since(&self, event: usize) -> bool {
+        let steers = self.events.iter().filter_map(|event| event.then.steer.as_ref());
+        let steering = steers.chain([&self.steering]).filter_map(Steering::commands).flatten();
+        self.control.commands().into_iter().chain(steering).any(|command| command.event() == Some(event))
+    }
+
     /// What ends the flight or lets something happen, with its place in the case.
     fn triggers(&self) -> impl Iterator<Item = (String, &Trigger)> {
         let events = self.events.iter().enumerate().map(|(index, event)| (format!("events.{index}.when"), &event.when));
@@ -721,12 +733,13 @@ impl Case {
         if self.atmosphere.has_speed_of_sound() {
             return Vec::new();
         }
-        let Control { bank_angle, angle_of_attack } = &self.control;
+        let [bank_angle, angle_of_attack] =
+            self.control.commands().map(|command| command.against() == Some(Against::Mach));
         let needs: [(Cow<'static, str>, bool); 4] = [
             ("vehicle.aerodynamics.type".into(), self.vehicle.aerodynamics.is_by_mach()),
-            ("control.bank_angle.against".into(), bank_angle.is_by_mach()),
-            ("control.angle_of_attack.against".into(), angle_of_attack.is_by_mach()),
-            ("control.steering".into(), self.steering.is_by_mach()),
+            ("control.bank_angle.against".into(), bank_angle),
+            ("control.angle_of_attack.against".into(), angle_of_attack),
+            ("control.steering".into(), self.steering.is_by(Against::Mach)),
         ];
         let conditions = self
             .conditions()
@@ -736,7 +749,7 @@ impl Case {
             (format!("events.{index}.then.aerodynamics.type").into(), by_mach)
         });
         let steers = self.events.iter().enumerate().map(|(index, event)| {
-            let by_mach = event.then.steer.as_ref().is_some_and(Steering::is_by_mach);
+            let by_mach = event.then.steer.as_ref().is_some_and(|steering| steering.is_by(Against::Mach));
             (format!("events.{index}.then.steer").into(), by_mach)
         });
         let needs = needs.into_iter().chain(conditions).chain(effects).chain(steers);
@@ -773,8 +786,13 @@ impl Case {
             }
             _ => None,
         });
+        let schedules = [("bank_angle", &self.control.bank_angle), ("angle_of_attack", &self.control.angle_of_attack)];
+        let clockless = schedules.into_iter().filter_map(|(name, command)| {
+            let is_missing = self.events.get(command.event()?).is_none();
+            is_missing.then(|| Fault::NoSuchEvent { field: format!("control.{name}.against.since") })
+        });
         let low = low.map(|ceiling| Fault::LowCeiling { ceiling, altitude });
-        falling.chain(low).chain(missing).chain(orphans).collect()
+        falling.chain(low).chain(missing).chain(orphans).chain(clockless).collect()
     }
 
     /// Whether an event waits for others that wait for each other, so that none of them ever happens.

@@ -1,8 +1,8 @@
 //! Steering: where the axis of a vehicle points, and with it the thrust of its engines.
 
-use nalgebra::Matrix3;
+use nalgebra::Rotation3;
 
-use crate::control::Command;
+use crate::control::{Against, Command};
 
 /// The direction of the axis of the vehicle, along which its engines push it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,7 +21,7 @@ pub enum Steering {
     /// A. E. Bryson and Y.-C. Ho, Applied Optimal Control, 1975, section 2.4.
     LinearTangent {
         /// As those of a program, in inertial space.
-        axes: Matrix3<f64>,
+        axes: Rotation3<f64>,
         /// At t = 0.
         a: f64,
         /// 1/s.
@@ -44,7 +44,7 @@ pub struct Program {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProgramAxes {
     /// Three that stay in inertial space, while the planet turns; as the columns of their planet-fixed components at t = 0.
-    Inertial(Matrix3<f64>),
+    Inertial(Rotation3<f64>),
     /// North, east and away from the planet's centre.
     Local,
 }
@@ -63,8 +63,19 @@ impl Steering {
         }
     }
 
-    /// Whether a command runs along the Mach number.
-    pub(crate) fn is_by_mach(&self) -> bool {
-        self.commands().is_some_and(|commands| commands.into_iter().any(Command::is_by_mach))
+    /// Whether a command runs along a quantity.
+    pub(crate) fn is_by(&self, against: Against) -> bool {
+        self.commands().into_iter().flatten().any(|command| command.against() == Some(against))
+    }
+
+    /// The same after events since which commands run have happened, each at a time, s; none of one that has not.
+    pub(crate) fn since(&self, time_of: impl Fn(usize) -> Option<f64>) -> Self {
+        match self {
+            Self::Program(Program { axes, pitch, yaw }) => {
+                let [pitch, yaw] = [pitch, yaw].map(|command| command.since(&time_of));
+                Self::Program(Program { axes: *axes, pitch, yaw })
+            }
+            other => other.clone(),
+        }
     }
 }

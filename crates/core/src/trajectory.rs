@@ -242,6 +242,8 @@ pub struct FlightPoint {
     pub inertial_flight_path_angle: f64,
     /// Half the squared inertial speed and the potential of the planet's gravity, J/kg.
     pub specific_energy: f64,
+    /// Relative to the rotating planet, by [`Planet::energy`](crate::Planet::energy), J/kg.
+    pub energy: f64,
     /// From the initial ground point along its heading, m, on the great circle of the sphere of radius r₀, counted on continuously over
     /// whole turns; none where the flight starts vertically or at rest. At the poles of the great circle, where the crossrange is a
     /// quarter of a turn, it is undefined: a flight that passes near one gains or loses up to half a turn within a short time, by the side on
@@ -697,6 +699,7 @@ impl Trajectory {
             angle_of_attack,
             inertial_speed: inertial.velocity.norm(),
             inertial_flight_path_angle: climb.atan2(across),
+            energy: planet.energy(&state.position, state.velocity.norm()),
             specific_energy: 0.5 * inertial.velocity.norm_squared() + planet.potential(&state.position),
             downrange,
             crossrange,

@@ -3,7 +3,7 @@
 use crate::coordinates::PlanetFixed;
 use crate::interrupt::Interrupt;
 use crate::motion::Power;
-use crate::scenario::{Bound, Case, Scenario};
+use crate::scenario::{Bound, Scenario};
 use crate::simulate::{SimulationError, arrival};
 use crate::trajectory::Trajectory;
 
@@ -49,14 +49,9 @@ pub fn verify(
 
 /// The greatest error of the balance, and the work of drag and thrust, J/kg.
 ///
-/// ```text
-/// E = V²/2 - ω² (x² + y²)/2 + U,   dE/dt = (D + L + T)·V/m
-/// ```
-///
-/// with the potential U of gravity; an impulse adds what it adds to V²/2. Without wind, lift and the Coriolis force are across the
-/// velocity; the energy is Jameson 2006, equation 29, integrated once.
+/// The energy is that of [`Planet::energy`](crate::Planet::energy); an impulse adds what it adds to V²/2.
 fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64, Power), SimulationError> {
-    let energy = |state: &PlanetFixed<f64>| energy(&flight.case, state);
+    let energy = |state: &PlanetFixed<f64>| flight.case.planet.energy(&state.position, state.velocity.norm());
     let mut given = energy(&flight.case.initial_state);
     let (mut drift, mut work) = (0.0_f64, Power { drag: 0.0, thrust: 0.0 });
     let mut event_records = flight.flown.event_records.iter().peekable();
@@ -85,13 +80,6 @@ fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64
         drift = drift.max((energy(&motion.end(&step.step).planet_fixed()) + work.drag - work.thrust - given).abs());
     }
     Ok((drift, work))
-}
-
-fn energy(case: &Case, state: &PlanetFixed<f64>) -> f64 {
-    let PlanetFixed { position, velocity } = state;
-    let from_axis_squared = position.x * position.x + position.y * position.y;
-    velocity.norm_squared() / 2.0 - case.planet.rotation_rate.powi(2) * from_axis_squared / 2.0
-        + case.planet.potential(position)
 }
 
 /// Abscissae, each for both signs, and weights of Gauss's quadrature with 12 points on [-1, 1]: exact to degree 23.

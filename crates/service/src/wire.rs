@@ -17,8 +17,11 @@ pub mod control;
 pub mod epoch;
 pub mod events;
 pub mod heating;
+pub mod parts;
 pub mod planet;
+pub mod separation;
 pub mod state;
+pub mod steering;
 pub mod vehicle;
 pub mod wind;
 

@@ -1,7 +1,7 @@
 //! What acts on the vehicle at an instant, and what an event may wait for.
 
 use super::directions::{Directions, lift_fade_over_cosine};
-use super::{Flow, Forces, Parameters, State, Switch};
+use super::{Flow, Forces, Local, Parameters, State, Switch};
 use crate::atmosphere::{Atmosphere, AtmosphereSample};
 use crate::event::Quantity;
 use crate::heating::{HeatFlux, Stagnation};
@@ -133,7 +133,8 @@ impl<P: Scalar> Forces<P> {
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
     pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &State<S>) -> S {
         // Whatever the density is.
-        let left = self.flow_without_axis::<false, _>(None, state).directions.left;
+        let nowhere = Local { air: None, potential: None };
+        let left = self.flow_without_axis::<false, _>(nowhere, state).directions.left;
         left.dot(&left)
     }
 }

@@ -6,7 +6,7 @@
 
 use num_dual::Dual64;
 
-use super::{Flow, Forces, State};
+use super::{Flow, Forces, Local, State};
 use crate::atmosphere::Atmosphere;
 use crate::control::Against;
 use crate::heating::Radiative;
@@ -110,11 +110,15 @@ impl ModelMode {
 
 impl SwitchQuantity {
     /// A flight that is nearer to a boundary than this counts as on it, and belongs to the side to which it moves: far more than a rounding
-    /// error, and far less than matters; s, m, m/s, a Mach number or rad.
+    /// error, and far less than matters; s, m, m/s, a Mach number, J/kg or rad.
     pub(crate) fn resolution(self) -> f64 {
         match self {
-            Self::Along(Against::Time | Against::Mach) | Self::AngleOfAttack | Self::LoadExcess => 1e-9,
+            Self::Along(Against::Time | Against::Since(_) | Against::Mach) | Self::AngleOfAttack | Self::LoadExcess => {
+                1e-9
+            }
             Self::Along(Against::Altitude | Against::Speed) | Self::AirSpeed => 1e-6,
+            // Those of a speed of 1000 m/s and an altitude.
+            Self::Along(Against::Energy) => 1e-3,
         }
     }
 }
@@ -182,19 +186,24 @@ impl<P: Scalar> Forces<P> {
         let flow = self.flow_where_mach_matters(time, state);
         Switch::ALL.map(|switch| match self.boundaries(switch) {
             Some((SwitchQuantity::LoadExcess, _)) => self.load_excess(time, state, &self.flow::<false, _>(time, state)),
-            Some((quantity, _)) => self.quantity_of(quantity, time, &flow),
+            Some((quantity, _)) => self.quantity_of(quantity, [time, self.clock(switch, time)], &flow),
             None => S::zero(),
         })
     }
 
     /// The air that meets the vehicle, as far as angles and coefficients depend on it: without its density, where that takes a look-up of its own.
     pub(super) fn flow_where_mach_matters<S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
-        if self.by_mach { self.flow::<false, _>(time, state) } else { self.flow_in::<false, _>(time, None, state) }
+        if self.by_mach {
+            return self.flow::<false, _>(time, state);
+        }
+        let potential = self.potential_where_asked(|| state.position);
+        self.flow_in::<false, _>(time, Local { air: None, potential }, state)
     }
 
-    fn quantity_of<S: Over<P>>(&self, quantity: SwitchQuantity, time: S, flow: &Flow<S>) -> S {
+    /// A quantity at a time, s, and by a clock that may lag behind it.
+    fn quantity_of<S: Over<P>>(&self, quantity: SwitchQuantity, [time, clock]: [S; 2], flow: &Flow<S>) -> S {
         match quantity {
-            SwitchQuantity::Along(against) => flow.quantity(against, time),
+            SwitchQuantity::Along(against) => flow.quantity(against, clock),
             SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow),
             SwitchQuantity::AirSpeed => flow.directions.speed,
             // It needs the density of the air.

@@ -59,6 +59,7 @@ impl<P: Scalar> Forces<P> {
             }
             Quantity::ApoapsisAltitude => apsides(planet, state)[0],
             Quantity::PeriapsisAltitude => apsides(planet, state)[1],
+            Quantity::Eccentricity => eccentricity(planet, &state.position, &inertial_velocity(planet, state)),
             Quantity::Inclination => {
                 let momentum = position.cross(&inertial_velocity(planet, state));
                 let level = (momentum.x * momentum.x + momentum.y * momentum.y).sqrt();
@@ -92,10 +93,25 @@ fn inertial_velocity<S: Scalar>(planet: &Planet, state: &State<S>) -> Vector3<S>
     Vector3::new(velocity.x - position.y * rate, velocity.y + position.x * rate, velocity.z)
 }
 
+/// The eccentricity of the osculating orbit, of inertial position, m, and velocity, m/s.
+///
+/// ```text
+/// e = |v × h / μ - r̂|
+/// ```
+///
+/// # Reference
+/// D. A. Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., 2013, section 2.4.
+fn eccentricity<S: Scalar>(planet: &Planet, position: &Vector3<S>, velocity: &Vector3<S>) -> S {
+    let over_parameter = planet.orbital_gravitational_parameter.recip();
+    let over_radius = reciprocal_or_one(length(position));
+    let pull = velocity.cross(&position.cross(velocity));
+    length(&Vector3::from_fn(|i, _| pull[i] * over_parameter - position[i] * over_radius))
+}
+
 /// The altitudes of apoapsis and periapsis of the osculating orbit above the equatorial radius, m.
 ///
 /// ```text
-/// e = |v × h / μ - r̂|,   r_a = μ (1 + e) / (-2E),   r_p = h² / (μ (1 + e))
+/// r_a = μ (1 + e) / (-2E),   r_p = h² / (μ (1 + e))
 /// ```
 ///
 /// # Reference
@@ -106,9 +122,7 @@ fn apsides<S: Scalar<Mask = bool>>(planet: &Planet, state: &State<S>) -> [S; 2] 
     let over_parameter = planet.orbital_gravitational_parameter.recip();
     let over_radius = reciprocal_or_one(length(position));
     let momentum = position.cross(&velocity);
-    let pull = velocity.cross(&momentum);
-    let eccentricity = Vector3::from_fn(|i, _| pull[i] * over_parameter - position[i] * over_radius);
-    let one_and_eccentricity = length(&eccentricity) + 1.0;
+    let one_and_eccentricity = eccentricity(planet, position, &velocity) + 1.0;
     // -2E/μ, one over the semi-major axis; not positive where the orbit is not bound.
     let over_semi_major_axis = over_radius * 2.0 - velocity.dot(&velocity) * over_parameter;
     let over_apoapsis = over_semi_major_axis * one_and_eccentricity.recip();

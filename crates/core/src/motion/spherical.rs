@@ -169,7 +169,7 @@ impl<P: Scalar> Spherical<P> {
         let [up, east, north] = unit.map(|part| part * speed);
         let position = Vector3::new(radius, S::zero(), S::zero());
         let forces = &self.0;
-        let local = forces.local_air::<THESIS, _>(time, || place.position());
+        let local = forces.local::<THESIS, _>(time, || place.position());
         match forces.wind::<THESIS, _>(altitude) {
             None => {
                 let still = Directions { speed, ..Directions::of(&position, &Vector3::new(up, east, north)) };

@@ -1,6 +1,6 @@
 //! The thrust: how large it is, where it points, and what it burns.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 use super::directions::{Directions, lift_fade_over_cosine, turned};
 use super::{Flow, Forces, State, Switch};
@@ -204,8 +204,8 @@ impl<P: Scalar> Forces<P> {
             Steering::Vertical => planet.shape.normal(&state.position),
             Steering::Velocity => self.axis_by_velocity(time, state, flow),
             Steering::Program(Program { axes, pitch, yaw }) => {
-                let pitch = flow.angle(pitch, self.mode.of(Switch::Pitch), time);
-                let yaw = flow.angle(yaw, self.mode.of(Switch::Yaw), time);
+                let pitch = flow.angle(pitch, self.mode.of(Switch::Pitch), self.clock(Switch::Pitch, time));
+                let yaw = flow.angle(yaw, self.mode.of(Switch::Yaw), self.clock(Switch::Yaw, time));
                 let ((sin_pitch, cos_pitch), (sin_yaw, cos_yaw)) = (pitch.sin_cos(), yaw.sin_cos());
                 let components = Vector3::new(cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch);
                 match axes {
@@ -261,7 +261,7 @@ impl Forces {
 }
 
 /// A vector by its components on axes that stay in inertial space; `axes` has those at t = 0 in its columns.
-fn turned_by<S: Scalar>(planet: &Planet, time: S, axes: &Matrix3<f64>, components: &Vector3<S>) -> Vector3<S> {
+fn turned_by<S: Scalar>(planet: &Planet, time: S, axes: &Rotation3<f64>, components: &Vector3<S>) -> Vector3<S> {
     let at_start = Vector3::from_fn(|row, _| {
         components.x * axes[(row, 0)] + components.y * axes[(row, 1)] + components.z * axes[(row, 2)]
     });

@@ -319,6 +319,7 @@ impl Quantity {
             | Self::DynamicPressure
             | Self::LoadFactor
             | Self::Mass
+            | Self::Eccentricity
             | Self::HeatFlux
             | Self::HeatLoad
             | Self::WallTemperature

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{Case, Numbers};
+use crate::control::Command;
 use crate::event::{Effect, ThrustCommand};
 use crate::motion::{Burn, Forces, Models, ThrustDirection};
 use crate::parachute::{Canopies, Canopy, Parachute};
@@ -41,6 +42,8 @@ pub(crate) struct Phase<P = f64> {
     pub(crate) steering: Steering,
     /// The event that steers so; none where it is the case.
     pub(crate) steering_of: Option<usize>,
+    /// The events since which angles run, by their places in the list, that have happened, and when, s.
+    pub(crate) origins: Vec<(usize, P)>,
 }
 
 /// With what a phase begins.
@@ -182,6 +185,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             load_limit: None,
             steering: numbers.case().steering.clone(),
             steering_of: None,
+            origins: Vec::new(),
         }
         .weighed()
     }
@@ -211,6 +215,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             load_limit: self.load_limit.map(number),
             steering: self.steering.clone(),
             steering_of: self.steering_of,
+            origins: self.origins.iter().map(|(event, time)| (*event, number(*time))).collect(),
         }
     }
 
@@ -356,6 +361,8 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             None => (self.steering.clone(), self.steering_of),
             Some(steering) => (steering.clone(), Some(event)),
         };
+        let mut origins = self.origins.clone();
+        origins.extend(numbers.case().has_schedules_since(event).then_some((event, time)));
         let after = Self {
             since: time,
             vehicle,
@@ -369,6 +376,7 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
             load_limit,
             steering,
             steering_of,
+            origins,
         };
         after.weighed()
     }
@@ -508,12 +516,27 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         let [lift, drag, bank] = numbers.offsets();
         // Those of the coefficients belong to the vehicle of the start.
         let offsets = if self.aerodynamics_of.is_none() { [lift, drag, bank] } else { [P::zero(), P::zero(), bank] };
-        let models = Models { steering: self.steering.clone(), ..models_of.models_of(&self.vehicle) };
+        let models = models_of.models_of(&self.vehicle);
+        let since = |event: usize| Some(self.origin(event)?.value());
+        let (control, steering) = (models.control.since(since), self.steering.since(since));
+        // The time of an event has its derivatives beside the models, which have none.
+        let lag = |command: &Command| {
+            command.event().and_then(|event| self.origin(event)).map_or_else(P::zero, |time| time - time.value())
+        };
+        let [bank_angle, angle_of_attack] = models_of.control.commands().map(lag);
+        let [pitch, yaw] = self.steering.commands().map_or([P::zero(); 2], |commands| commands.map(lag));
+        let models = Models { control, steering, ..models };
         Forces::new(models, Case::parameters_of(numbers, &self.vehicle, offsets))
+            .lagging([bank_angle, angle_of_attack, pitch, yaw])
             .of_mass(self.vehicle.mass)
             .burning(burn)
             .under(Canopies::of(&self.canopies, over_mass))
             .held(self.held)
+    }
+
+    /// When an event happened since which an angle runs, s.
+    fn origin(&self, event: usize) -> Option<P> {
+        self.origins.iter().find(|(origin, _)| *origin == event).map(|(_, time)| *time)
     }
 
     /// The thrust that acts in it, if there is any: that of an event, or of the engines together.

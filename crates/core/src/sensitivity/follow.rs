@@ -246,7 +246,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             self.keep(Place::Before(place), instant);
             self.apply_tilt(record);
             self.apply_impulse(record, delay);
-            if !self.of.flight.case.events[record.event].then.is_none() {
+            if self.of.flight.case.begins_phase(record.event) {
                 self.set_phase(self.phase.after(record.event, &self.of.varied, instant, self.mass()));
                 self.phase_index = record.after.phase;
             }

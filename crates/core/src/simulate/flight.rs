@@ -305,7 +305,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if effect.lift_off && self.phase.held {
             self.stop_altitude.start_upward();
         }
-        if !effect.is_none() {
+        if self.scenario.case().begins_phase(event) {
             self.enter(self.phase.after(event, self.scenario.case(), self.time, self.mass()))?;
         }
         self.log.event_records.push(EventRecord { event, before, after: self.instant() });

@@ -50,8 +50,10 @@ impl BoundaryCrossing {
         after: &ModelBoundaryDetector,
         forces: &Forces,
     ) -> bool {
-        let by_speed =
-            matches!(forces.boundaries(self.switch), Some((SwitchQuantity::Along(Against::Speed | Against::Mach), _)));
+        let by_speed = matches!(
+            forces.boundaries(self.switch),
+            Some((SwitchQuantity::Along(Against::Speed | Against::Mach | Against::Energy), _))
+        );
         let rate = |of: &ModelBoundaryDetector| self.boundary.inside(of.readings[self.switch as usize]).eps;
         by_speed && rate(before) < 0.0 && rate(after) > 0.0
     }

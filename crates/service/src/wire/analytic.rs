@@ -10,7 +10,6 @@ use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::bodies::FlownBody;
-use super::control::is_given;
 use super::description::{self, Object, Words, word};
 use super::dispersions::Covariance;
 use super::reader::Fault;
@@ -302,7 +301,7 @@ impl AnalyticResponse {
         };
         let mut warnings =
             Warning::of(&request, &FlownBody::vehicle(&request, flight), analyses.unverified, Purpose::Theory);
-        if is_given(&request.control.bank_angle) {
+        if request.control.bank_angle.is_given() {
             warnings.push(Warning::bank_left_out());
         }
         if request.wind.blows {

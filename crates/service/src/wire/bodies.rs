@@ -8,6 +8,7 @@ use reentry::trajectory::{FlightPoint, Trajectory};
 use super::columns::AvailableQuantities;
 use super::events::Event;
 use super::scenario::SimulateRequest;
+use super::separation::Separation;
 use super::shown::quoted;
 
 /// All that flew in a case.
@@ -33,14 +34,14 @@ pub struct FlownBody<'a> {
 }
 
 /// What a request says of the vehicle or of a body.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct DescribedBody<'a> {
     /// The name of a body; none of the vehicle.
     pub name: Option<&'a str>,
     /// Its events.
     pub events: &'a [Event],
     /// The names of its parts.
-    parts: &'a [String],
+    parts: Vec<&'a str>,
 }
 
 /// A separation that happened.
@@ -102,19 +103,21 @@ impl<'a> FlownBody<'a> {
     /// What is left of the propellant of the part of a name at a point of the flight, of all of its count together, kg: nothing is known of it
     /// once the part has left; none at all where there never was one of the name.
     pub fn propellant(&self, point: &FlightPoint, part: &str) -> Option<Option<f64>> {
-        let place = self.described.parts.iter().position(|name| name == part)?;
+        let place = self.described.parts.iter().position(|name| *name == part)?;
         Some(self.flight.propellant(point, place))
     }
 }
 
 impl<'a> DescribedBody<'a> {
     fn vehicle(request: &'a SimulateRequest) -> Self {
-        Self { name: None, events: &request.events, parts: &[] }
+        let parts = request.parts.iter().map(|part| part.name.as_str()).collect();
+        Self { name: None, events: &request.events, parts }
     }
 
     /// What leaves it by a separation of an event.
-    fn separated(&self, _event: usize, _separation: usize) -> Self {
-        Self { name: Some(""), events: &[], parts: &[] }
+    fn separated(&self, event: usize, separation: usize) -> Self {
+        let Separation { name, parts, events, .. } = &self.events[event].then.separated[separation];
+        Self { name: Some(name), events, parts: parts.iter().map(String::as_str).collect() }
     }
 
     /// The event of a place, for people: of a body with its name.

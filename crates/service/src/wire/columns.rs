@@ -143,7 +143,7 @@ const fn orbit_turn(name: &'static str, description: &'static str, value: fn(&Or
 }
 
 /// Every quantity, in the order of the answer.
-pub static COLUMNS: [Column; 46] = [
+pub static COLUMNS: [Column; 47] = [
     column("time", "Time since the start, s.", |point| point.time),
     column("altitude", "Altitude above the planet's surface along the radius vector, m.", |point| point.loads.altitude),
     column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
@@ -364,6 +364,16 @@ pub static COLUMNS: [Column; 46] = [
             "pitch",
             "Angle of the vehicle's axis above the plane normal to the radius; present if the vehicle has parts.",
             ColumnSource::MaybeAngle(|point| point.pitch),
+        )
+    },
+    Column {
+        given: Given::OnRequest,
+        ..column(
+            "energy",
+            "Energy relative to the rotating planet, J/kg: half the squared relative speed plus the gravitational \
+             potential (0 at infinity) minus half the squared speed of the planet's rotation at that place. In still \
+             air, only thrust increases it. Schedules against `energy` use it.",
+            |point| point.energy,
         )
     },
 ];

@@ -6,9 +6,11 @@ use reentry::control::{Against, Command, Control, Interpolation, Schedule};
 use reentry::scenario::Bound;
 use serde_json::json;
 
-use super::description::{AngleOrObject, Field, Object, Words, word};
-use super::reader::MOST_ENTRIES;
+use super::description::{AngleOrObject, Field, Object, WordOrObject, Words, word};
+use super::events::Event;
+use super::reader::{Fault, MOST_ENTRIES};
 use super::schema::{bounds, is};
+use super::steering::{Steering, steering};
 
 /// What a schedule runs along.
 const AGAINST: Words<Against> = Words {
@@ -20,8 +22,91 @@ const AGAINST: Words<Against> = Words {
         word("speed", Against::Speed, "Speed, m/s").unit("m/s").doc("Speed relative to the rotating planet, m/s."),
         word("mach", Against::Mach, "Mach number")
             .doc("Mach number: air speed over speed of sound. The atmosphere must have a speed of sound."),
+        word("energy", Against::Energy, "Energy, J/kg").unit("J/kg").doc(
+            "Energy relative to the rotating planet, J/kg, as in the column `energy`: half the squared relative speed \
+             plus the gravitational potential (0 at infinity) minus half the squared speed of the planet's rotation at \
+             that place. In still air, only thrust increases it.",
+        ),
     ],
 };
+
+/// A quantity of the flight, or the time since an event.
+const VARIABLE: WordOrObject = WordOrObject {
+    name: "ScheduleVariable",
+    doc: "Independent variable of a schedule: a word for a quantity of the flight, or the time since an event.",
+};
+
+/// How a vehicle is flown.
+#[derive(Clone, Debug)]
+pub struct ControlRequest {
+    /// Bank angle.
+    pub bank_angle: CommandRequest,
+    /// Angle of attack.
+    pub angle_of_attack: CommandRequest,
+    /// Where the axis of a vehicle with parts points; none where nothing is said.
+    pub steering: Option<Steering>,
+}
+
+/// A command of an angle, with the name of the event since which it runs.
+#[derive(Clone, Debug)]
+pub struct CommandRequest {
+    /// The same for the core, but for the event.
+    pub core: Command,
+    /// The name of the event since which it runs, if it does.
+    since: Option<String>,
+}
+
+/// What a schedule of a request runs along.
+enum Variable {
+    Quantity(Against),
+    Since(String),
+}
+
+impl From<Against> for Variable {
+    fn from(against: Against) -> Self {
+        Self::Quantity(against)
+    }
+}
+
+impl CommandRequest {
+    /// The core's command; a schedule since an event of no name in the list runs since one beyond its end.
+    pub(super) fn to_core(&self, events: &[Event]) -> Command {
+        match (&self.core, &self.since) {
+            (Command::Schedule(schedule), Some(name)) => {
+                let event = Event::place_of(name, events).unwrap_or(events.len());
+                Command::Schedule(Arc::new(schedule.along(Against::Since(event))))
+            }
+            (other, _) => other.clone(),
+        }
+    }
+
+    /// What is wrong with the name of the event since which it runs; `pointer` is that of the command.
+    pub(super) fn name_fault(&self, pointer: String, events: &[Event]) -> Option<Fault> {
+        Event::name_fault(self.since.as_ref()?, format!("{pointer}/against/since"), events)
+    }
+
+    /// Whether it is anything but 0 all the time.
+    pub(super) fn is_given(&self) -> bool {
+        !matches!(self.core, Command::Constant(angle) if angle == 0.0)
+    }
+}
+
+impl ControlRequest {
+    /// The core's control, but for the steering.
+    pub(super) fn to_core(&self, events: &[Event]) -> Control {
+        let Self { bank_angle, angle_of_attack, .. } = self;
+        Control { bank_angle: bank_angle.to_core(events), angle_of_attack: angle_of_attack.to_core(events) }
+    }
+
+    /// Names of events that are not those of one event alone.
+    pub(super) fn name_faults(&self, events: &[Event]) -> Vec<Fault> {
+        let Self { bank_angle, angle_of_attack, steering } = self;
+        let of_steering = steering.iter().flat_map(|it| it.name_faults("/control/steering", events));
+        let named = [("bank_angle", bank_angle), ("angle_of_attack", angle_of_attack)];
+        let faults = named.map(|(field, command)| command.name_fault(format!("/control/{field}"), events));
+        faults.into_iter().flatten().chain(of_steering).collect()
+    }
+}
 
 /// What a schedule does between its entries.
 const INTERPOLATION: Words<Interpolation> = Words {
@@ -42,8 +127,11 @@ const COMMAND: AngleOrObject = AngleOrObject {
 };
 
 /// How the vehicle is flown.
-pub(super) fn control(object: &mut Object) -> Option<Control> {
-    object.named("Control", "Bank angle and angle of attack during the flight; each is a constant or a schedule.");
+pub(super) fn control(object: &mut Object) -> Option<ControlRequest> {
+    object.named(
+        "Control",
+        "Bank angle, angle of attack and steering during the flight; each angle is a constant or a schedule.",
+    );
     let bank_angle = command(object.field("bank_angle", "Bank angle").doc(
         "Bank angle. At 0, lift points upward in the plane of radius and velocity; a positive angle tilts it to the \
          left of the flight direction.",
@@ -53,20 +141,33 @@ pub(super) fn control(object: &mut Object) -> Option<Control> {
             .field("angle_of_attack", "Angle of attack")
             .doc("Angle of attack. Only the coefficients of an `alpha_mach_table` depend on it."),
     );
-    Some(Control { bank_angle: bank_angle?, angle_of_attack: angle_of_attack? })
+    let steering = object
+        .field("steering", "Steering")
+        .doc(
+            "Direction of the vehicle's axis, along which its engines push. It requires `vehicle.parts`. Default: \
+             `velocity`.",
+        )
+        .optional()
+        .object(steering);
+    Some(ControlRequest { bank_angle: bank_angle?, angle_of_attack: angle_of_attack?, steering })
 }
 
-fn command(field: Field) -> Option<Command> {
-    let schedule = |object: &mut Object| schedule(object).map(Arc::new).map(Command::Schedule);
-    field.default(0.0).angle_or(&COMMAND, Bound::TURN, Command::Constant, schedule)
+/// A command that is 0 where it is left out.
+pub(super) fn command(field: Field) -> Option<CommandRequest> {
+    required_command(field.default(0.0))
 }
 
-/// Whether a command is anything but 0 all the time.
-pub(super) fn is_given(command: &Command) -> bool {
-    !matches!(command, Command::Constant(angle) if *angle == 0.0)
+/// A command.
+pub(super) fn required_command(field: Field) -> Option<CommandRequest> {
+    let constant = |angle| CommandRequest { core: Command::Constant(angle), since: None };
+    let schedule = |object: &mut Object| {
+        let (schedule, since) = schedule(object)?;
+        Some(CommandRequest { core: Command::Schedule(Arc::new(schedule)), since })
+    };
+    field.angle_or(&COMMAND, Bound::TURN, constant, schedule)
 }
 
-fn schedule(object: &mut Object) -> Option<Schedule> {
+fn schedule(object: &mut Object) -> Option<(Schedule, Option<String>)> {
     object.named(
         "Schedule",
         "Angle as a function of a quantity of the flight. Before the first entry and after the last, their values \
@@ -75,26 +176,49 @@ fn schedule(object: &mut Object) -> Option<Schedule> {
     object.of_type("schedule", "Always `schedule`.", entries)
 }
 
-fn entries(object: &mut Object) -> Option<Schedule> {
-    let against =
-        object.field("against", "Independent variable").doc("Independent variable of the schedule.").word(&AGAINST);
+fn since(object: &mut Object) -> Option<Variable> {
+    object.named(
+        "SinceEvent",
+        "Time since an event, s. Until the event happens, the first value of the schedule holds, and if it never \
+         happens, for the whole flight.",
+    );
+    object.field("since", "Since event").doc("Name of the event.").text().map(Variable::Since)
+}
+
+fn entries(object: &mut Object) -> Option<(Schedule, Option<String>)> {
+    let variable = object.field("against", "Independent variable").doc("Independent variable of the schedule.");
+    // The event is found by its name where all events are known.
+    let (against, since) = match variable.word_or(&VARIABLE, &AGAINST, since) {
+        Some(Variable::Quantity(against)) => (Some(against), None),
+        Some(Variable::Since(name)) => (Some(Against::Since(0)), Some(name)),
+        None => (None, None),
+    };
     let bound = match against {
         Some(Against::Altitude) => Bound::DISTANCE,
-        Some(Against::Time | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
-        None => Bound::FINITE,
+        Some(Against::Energy) | None => Bound::FINITE,
+        Some(Against::Time | Against::Since(_) | Against::Speed | Against::Mach) => Bound::NON_NEGATIVE,
+    };
+    let unit = match against {
+        Some(Against::Since(_)) => "s",
+        other => other.map_or("", |against| AGAINST.unit_of(against)),
     };
     let at = object
         .field("at", "Breakpoint")
         .doc(
-            "Values of the independent variable, ascending, in its unit. Time, speed and Mach number must be at least \
-             0.",
+            "Values of the independent variable, ascending, in its unit. Times, speed and Mach number must be at least \
+             0. The energy is negative near the planet; a descent passes its values from the last to the first.",
         )
-        .unit(against.map_or("", |against| AGAINST.unit_of(against)))
+        .unit(unit)
         .ascending()
         .numbers(bound, [1, MOST_ENTRIES]);
     object.condition(|| {
         let at = |bound| json!({"properties": {"at": {"items": bounds(bound)}}});
-        json!({"if": is("against", "altitude"), "then": at(Bound::DISTANCE), "else": at(Bound::NON_NEGATIVE)})
+        json!({"if": is("against", "altitude"), "then": at(Bound::DISTANCE)})
+    });
+    object.condition(|| {
+        let signed = ["altitude", "energy"].map(|word| is("against", word));
+        let at = json!({"properties": {"at": {"items": bounds(Bound::NON_NEGATIVE)}}});
+        json!({"if": {"not": {"anyOf": signed}}, "then": at})
     });
     let value = object
         .field("value", "Angle")
@@ -108,5 +232,5 @@ fn entries(object: &mut Object) -> Option<Schedule> {
         .word(&INTERPOLATION);
     let (against, at, value, interpolation) = (against?, at?, value?, interpolation?);
     let schedule = sound.then(|| Schedule::new(against, &at, &value, interpolation))?;
-    object.sound(schedule)
+    Some((object.sound(schedule)?, since))
 }

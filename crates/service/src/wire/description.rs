@@ -117,6 +117,12 @@ impl<'a, 'b> Object<'a, 'b> {
 
     /// The kind of the object by its field `type`, which `doc` describes, and by it what the object is.
     pub fn variants<T>(&mut self, doc: &'static str, variants: &[Variant<T>]) -> Option<T> {
+        self.variants_of(doc, variants, &[])
+    }
+
+    /// The same of variants in two lists.
+    pub fn variants_of<T>(&mut self, doc: &'static str, variants: &[Variant<T>], more: &[Variant<T>]) -> Option<T> {
+        let variants: Vec<_> = variants.iter().chain(more).collect();
         match &mut self.0 {
             Mode::Read(reader) => {
                 let words: Vec<_> = variants.iter().map(|variant| variant.word).collect();
@@ -220,19 +226,30 @@ impl<'a, 'b> Object<'a, 'b> {
             Mode::Read(reader) => {
                 let Some(chosen) = reader.exactly_one(&names) else {
                     // Which of the other fields belong here is not known.
-                    let mut components = Components::new();
-                    let mut schema = ObjectSchema::new(&mut components);
                     for (_, describe) in alternatives {
-                        describe(&mut Object(Mode::Describe(&mut schema)));
+                        fields_of(*describe).into_iter().for_each(|name| _ = reader.has(name));
                     }
-                    schema.field_names().iter().for_each(|name| _ = reader.has(name));
                     return None;
                 };
                 alternatives.iter().find(|(name, _)| *name == chosen).and_then(|(_, read)| read(self))
             }
             Mode::Describe(schema) => {
+                let fields = alternatives.iter().map(|(_, describe)| fields_of(*describe)).collect::<Vec<_>>();
+                let having = |field: &str| {
+                    let having = names.iter().zip(&fields).filter(|(_, fields)| fields.contains(&field));
+                    having.map(|(name, _)| *name).collect::<Vec<_>>()
+                };
+                let mut shared: Vec<_> = fields.concat();
+                shared.retain(|field| having(field).len() > 1);
+                shared.sort_unstable();
+                shared.dedup();
                 for (name, describe) in alternatives {
-                    schema.alternative(name, |schema| _ = describe(&mut Object(Mode::Describe(schema))));
+                    schema.alternative(name, &shared, |schema| _ = describe(&mut Object(Mode::Describe(schema))));
+                }
+                for field in shared {
+                    let given = having(field).into_iter().map(|name| json!({"required": [name]})).collect::<Vec<_>>();
+                    let absent = json!({"properties": {field: false}});
+                    schema.require(json!({"if": {"not": {"anyOf": given}}, "then": absent}));
                 }
                 _ = self.exactly_one(&names);
                 None
@@ -333,4 +350,12 @@ impl<'a, 'b> Object<'a, 'b> {
     pub fn turns(&mut self) -> bool {
         self.reader().is_some_and(|reader| reader.turns())
     }
+}
+
+/// The names of the fields that a description adds.
+fn fields_of<T>(describe: &dyn Fn(&mut Object) -> Option<T>) -> Vec<&'static str> {
+    let mut components = Components::new();
+    let mut schema = ObjectSchema::new(&mut components);
+    describe(&mut Object(Mode::Describe(&mut schema)));
+    schema.field_names().to_vec()
 }

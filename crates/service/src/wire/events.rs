@@ -5,19 +5,26 @@ use std::collections::hash_map::Entry;
 
 use reentry::coordinates::Rotation;
 use reentry::event::{
-    Condition as Crossing, Direction, Effect as CoreEffect, Event as CoreEvent, Quantity, ThrustCommand, Trigger,
+    Condition as Crossing, Direction, Effect as CoreEffect, Event as CoreEvent, Quantity, Separation as CoreSeparation,
+    Throttle, ThrustCommand, Tilt, Trigger,
 };
 use reentry::parachute::Parachute;
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
-use reentry::scenario::Bound;
+use reentry::scenario::{Bound, MOST_BODIES};
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
 
-use super::description::{Object, WordOrObject, Words, word};
+use super::description::{Field, Object, WordOrObject, Words, word};
+use super::parts::{MOST_PARTS, NamedPart};
 use super::reader::{Fault, MOST_FAULTS};
 use super::schema::{ANGLE, bounds, is, widened};
+use super::separation::{Separation, separation};
 use super::shown::{quoted, shown};
+use super::steering::{Axes, Steering, steering};
 use super::vehicle::aerodynamics;
+
+/// The name of the event of a launch.
+pub const LIFT_OFF: &str = "liftoff";
 
 /// The greatest number of events, and of conditions that end a flight.
 pub const MOST_EVENTS: usize = 1000;
@@ -40,6 +47,8 @@ pub enum Condition {
     Crossing(Crossing),
     /// So much time, s, has passed since the event of this name.
     After(String, f64),
+    /// So much time, s, has passed since the part of this name burnt out.
+    AfterBurnout(String, f64),
 }
 
 /// What an event changes.
@@ -51,6 +60,18 @@ pub struct Effect {
     pub deployed: Option<String>,
     /// The names of the parachutes that are cut off.
     pub released: Vec<String>,
+    /// The names of the parts whose engines are lit.
+    pub ignited: Vec<String>,
+    /// The names of the parts whose engines are shut down.
+    pub shut_down: Vec<String>,
+    /// The names of the parts whose engines are throttled, and how far.
+    pub throttled: Vec<(String, f64)>,
+    /// Where the axis of the vehicle points.
+    pub steering: Option<Steering>,
+    /// The angle of a turn of the velocity, and its azimuth, rad; that of the launch where it is not given.
+    pub tilt: Option<(f64, Option<f64>)>,
+    /// What leaves the vehicle.
+    pub separated: Vec<Separation>,
 }
 
 /// The quantities of conditions.
@@ -87,6 +108,8 @@ pub static QUANTITIES: Words<Quantity> = Words {
         word("periapsis_altitude", Quantity::PeriapsisAltitude, "Periapsis altitude, m")
             .unit("m")
             .doc("Periapsis altitude of the osculating orbit above the equatorial radius, m."),
+        word("eccentricity", Quantity::Eccentricity, "Eccentricity")
+            .doc("Eccentricity of the osculating orbit; 1 for motion along the radius vector."),
         word("inclination", Quantity::Inclination, "Inclination")
             .unit(ANGLE)
             .doc("Inclination of the osculating orbit to the equator."),
@@ -140,13 +163,13 @@ pub(super) fn event(object: &mut Object) -> Option<Event> {
 pub(super) fn condition(object: &mut Object) -> Option<Condition> {
     object.named(
         "Condition",
-        "Crossing of a value by a quantity, downwards or upwards, or a delay after another event.\n\nA condition on a \
+        "Crossing of a value by a quantity, downwards or upwards, or a delay after another event or after a burnout.\n\nA condition on a \
          quantity is met the first time the quantity crosses the value in the given direction, whether continuously \
          or in a jump (the load factor jumps when a parachute opens). If the quantity starts at the value, the \
          condition is met as soon as it moves in that direction, however slowly. If it starts past the value, it must \
          first return.",
     );
-    object.alternatives(&[("quantity", &crossing), ("event", &after)])
+    object.alternatives(&[("quantity", &crossing), ("event", &after), ("burnout", &after_burnout)])
 }
 
 fn crossing(object: &mut Object) -> Option<Condition> {
@@ -193,13 +216,30 @@ fn after(object: &mut Object) -> Option<Condition> {
         .doc("Name of another event; the condition is met `delay` seconds after it.")
         .optional()
         .text();
-    let delay = object
-        .field("delay", "Delay after event")
-        .doc("Time after that event, s.")
+    let delay = delay(object);
+    Some(Condition::After(event?, delay?))
+}
+
+fn after_burnout(object: &mut Object) -> Option<Condition> {
+    let part = object
+        .field("burnout", "Or after burnout of part")
+        .doc(
+            "Name of a part; the condition is met `delay` seconds after its burnout: its propellant is spent, or its \
+             thrust table is over. A shut-down is no burnout.",
+        )
+        .optional()
+        .text();
+    let delay = delay(object);
+    Some(Condition::AfterBurnout(part?, delay?))
+}
+
+fn delay(object: &mut Object) -> Option<f64> {
+    object
+        .field("delay", "Delay")
+        .doc("Time after that event or burnout, s.")
         .unit("s")
         .default(0.0)
-        .number(Bound::TIME);
-    Some(Condition::After(event?, delay?))
+        .number(Bound::TIME)
 }
 
 /// What an event changes.
@@ -251,12 +291,74 @@ fn effect(object: &mut Object) -> Option<Effect> {
         )
         .optional()
         .texts(MOST_EVENTS);
+    let ignited = part_names(object.field("ignite", "Ignite").doc("Names of parts whose engines the event ignites."));
+    let shut_down = part_names(object.field("shut_down", "Shut down").doc(
+        "Names of parts whose engines the event shuts down. A shut-down engine can be ignited again; a thrust table then \
+         starts anew.",
+    ));
+    let throttled = object
+        .field("throttle", "Throttle")
+        .doc(
+            "Throttle of engines, from 0 to 1, by the names of their parts: the share of the thrust in vacuum and of \
+             the mass flow. Before, it is 1.",
+        )
+        .optional()
+        .numbers_by_name(Bound::SHARE);
+    let load_limit = object
+        .field("load_limit", "Load limit")
+        .doc(
+            "Load factor, in g of the Earth, at which all engines are throttled alike so that it does not rise further; \
+             `null` removes the limit.",
+        )
+        .optional()
+        .number_or_null(Bound::LOAD_LIMIT);
+    let steering = object.field("steer", "Steer").doc("Steering from the event on.").optional().object(steering);
+    let tilt = object
+        .field("tilt", "Tilt")
+        .doc("Turn of the velocity at constant speed: the pitch-over of a launch.")
+        .optional()
+        .object(tilt);
+    let separated = object
+        .field("separate", "Separate")
+        .doc("Bodies that leave the vehicle, before all other effects of the event.")
+        .optional()
+        .objects([0, MOST_BODIES], separation);
     let (deployed, deploy) = parachute.unzip();
-    let core = CoreEffect { mass, reference_area, aerodynamics, impulse, thrust, deploy, ..CoreEffect::default() };
-    Some(Effect { core, deployed, released: released.unwrap_or_default() })
+    let core =
+        CoreEffect { mass, reference_area, aerodynamics, impulse, thrust, deploy, load_limit, ..CoreEffect::default() };
+    Some(Effect {
+        core,
+        deployed,
+        released: released.unwrap_or_default(),
+        ignited,
+        shut_down,
+        throttled: throttled.unwrap_or_default(),
+        steering,
+        tilt,
+        separated: separated.unwrap_or_default(),
+    })
 }
 
-fn impulse(object: &mut Object) -> Option<Impulse> {
+/// Names of parts; none where there are none.
+fn part_names(field: Field) -> Vec<String> {
+    field.optional().texts(MOST_PARTS).unwrap_or_default()
+}
+
+fn tilt(object: &mut Object) -> Option<(f64, Option<f64>)> {
+    object.named("Tilt", "Turn of the velocity at constant speed.");
+    let angle = object
+        .field("angle", "Angle")
+        .doc("Angle by which the velocity turns away from the radial direction.")
+        .angle(Bound::TURN);
+    let azimuth = object
+        .field("azimuth", "Azimuth")
+        .doc("Azimuth towards which it turns, clockwise from north. Default: that of the launch frame.")
+        .optional()
+        .angle(Bound::TURN);
+    Some((angle?, azimuth))
+}
+
+pub(super) fn impulse(object: &mut Object) -> Option<Impulse> {
     object.named("DeltaV", "Instantaneous change of velocity.");
     let along = along(object, "Direction of the change.");
     let speed_change = object
@@ -392,8 +494,22 @@ fn parachute(object: &mut Object) -> Option<(String, Parachute)> {
 }
 
 impl Event {
-    pub(super) fn to_core(&self, events: &[Self], references: &EventReferences) -> CoreEvent {
+    /// The lift-off of a vehicle that is held on the ground.
+    pub fn lift_off() -> Self {
+        let condition = Crossing { quantity: Quantity::UpwardAcceleration, value: 0.0, direction: Direction::Rising };
+        let core = CoreEffect { lift_off: true, ..CoreEffect::default() };
+        Self {
+            name: Some(LIFT_OFF.to_owned()),
+            when: Condition::Crossing(condition),
+            then: Effect { core, ..Effect::default() },
+        }
+    }
+
+    /// The core's event; the separations have the places of their bodies from `first_body` on.
+    pub(super) fn to_core(&self, events: &[Self], references: &EventReferences, first_body: usize) -> CoreEvent {
         let parachute = |name: &String| references.parachutes.get(name.as_str()).copied();
+        let place = |name: &String| NamedPart::place_of(name, references.parts).unwrap_or(references.parts.len());
+        let places = |names: &[String]| names.iter().map(place).collect();
         let turned = |axis: ThrustAxis| axis.rotated_by(&references.to_planet);
         let mut then = self.then.core.clone();
         then.release = self.then.released.iter().filter_map(parachute).collect();
@@ -403,7 +519,59 @@ impl Event {
         if let Some(ThrustCommand::On(thrust)) = &mut then.thrust {
             thrust.along = turned(thrust.along);
         }
-        CoreEvent { when: self.when.to_core(events), then }
+        let Effect { ignited, shut_down, throttled, steering, tilt, separated, .. } = &self.then;
+        (then.ignite, then.shut_down) = (places(ignited), places(shut_down));
+        then.throttle = throttled.iter().map(|(name, value)| Throttle { part: place(name), value: *value }).collect();
+        then.steer = steering.as_ref().map(|steering| steering.to_core(events, &references.axes));
+        then.tilt = tilt.map(|(angle, azimuth)| Tilt { angle, azimuth: azimuth.unwrap_or(references.azimuth) });
+        let separation = |(index, separation): (usize, &Separation)| CoreSeparation {
+            parts: places(&separation.parts),
+            push: separation.push.map(|push| Impulse { along: turned(push.along), ..push }),
+            body: first_body + index,
+        };
+        then.separate = separated.iter().enumerate().map(separation).collect();
+        CoreEvent { when: self.when.to_core(events, references.parts), then }
+    }
+
+    /// Names of parts that the case does not have, or that have no engine.
+    pub(super) fn part_faults(events: &[Self], parts: &[NamedPart]) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (index, Self { then, .. }) in events.iter().enumerate() {
+            let place = format!("/events/{index}/then");
+            let mut check = |name: &str, with_engine: bool, pointer: String| {
+                faults.extend(NamedPart::name_fault(name, parts, with_engine, pointer));
+            };
+            for (at, name) in then.ignited.iter().enumerate() {
+                check(name, true, format!("{place}/ignite/{at}"));
+            }
+            for (at, name) in then.shut_down.iter().enumerate() {
+                check(name, true, format!("{place}/shut_down/{at}"));
+            }
+            for (name, _) in &then.throttled {
+                check(name, true, format!("{place}/throttle/{}", name.replace('~', "~0").replace('/', "~1")));
+            }
+            for (at, separation) in then.separated.iter().enumerate() {
+                for (of_body, name) in separation.parts.iter().enumerate() {
+                    check(name, false, format!("{place}/separate/{at}/parts/{of_body}"));
+                }
+            }
+            let needs_parts = [("load_limit", then.core.load_limit.is_some()), ("steer", then.steering.is_some())];
+            let needless = needs_parts.into_iter().filter(|(_, is_given)| *is_given && parts.is_empty());
+            faults.extend(needless.map(|(field, _)| {
+                Fault::new(format!("{place}/{field}"), "requires vehicle.parts: it acts on their engines")
+            }));
+        }
+        faults
+    }
+
+    /// Events of the name that is that of a launch.
+    pub(super) fn lift_off_faults(events: &[Self]) -> Vec<Fault> {
+        let named = events
+            .iter()
+            .enumerate()
+            .filter(|(_, event)| event.name.as_deref() == Some(LIFT_OFF) && !event.then.core.lift_off);
+        let detail = format!("must not be {LIFT_OFF:?}, which is the event of the launch");
+        named.map(|(index, _)| Fault::new(format!("/events/{index}/name"), detail.clone())).collect()
     }
 
     /// Whether it may change the mass.
@@ -421,7 +589,10 @@ impl Event {
     fn is_inertial(&self) -> bool {
         let is_inertial = |axis: ThrustAxis| matches!(axis, ThrustAxis::Inertial(_));
         let CoreEffect { impulse, thrust, .. } = &self.then.core;
-        impulse.is_some_and(|impulse| is_inertial(impulse.along))
+        let pushes = self.then.separated.iter().filter_map(|separation| separation.push);
+        let steers = self.then.steering.as_ref().is_some_and(Steering::is_inertial);
+        steers
+            || impulse.iter().copied().chain(pushes).any(|impulse| is_inertial(impulse.along))
             || matches!(thrust, Some(ThrustCommand::On(thrust)) if is_inertial(thrust.along))
     }
 
@@ -431,6 +602,25 @@ impl Event {
                       custom planet; give sidereal_time or sidereal_angle";
         let unknown = !is_angle_known && events.iter().any(Self::is_inertial);
         unknown.then(|| Fault::new("/initial_state/sidereal_time", detail)).into_iter().collect()
+    }
+
+    /// The place of the first event of a name in the list.
+    pub(super) fn place_of(name: &str, events: &[Self]) -> Option<usize> {
+        events.iter().position(|event| event.name.as_deref() == Some(name))
+    }
+
+    /// What is wrong with the name of an event, which must be that of one event alone; `pointer` is that of the name.
+    pub(super) fn name_fault(name: &str, pointer: String, events: &[Self]) -> Option<Fault> {
+        let named = events.iter().filter(|event| event.name.as_deref() == Some(name)).count();
+        let detail = match named {
+            0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
+            1 => return None,
+            _ => format!(
+                "must be the name of exactly one event, got {}, the name of {named} events",
+                shown(&json!(name))
+            ),
+        };
+        Some(Fault::new(pointer, detail))
     }
 
     /// Parachutes that share a name, and names of those that are cut off and never deployed.
@@ -491,29 +681,26 @@ impl Event {
 
 impl Condition {
     /// The core's trigger; one that waits for an event of no name in the list waits for one beyond its end.
-    pub(super) fn to_core(&self, events: &[Event]) -> Trigger {
+    pub(super) fn to_core(&self, events: &[Event], parts: &[NamedPart]) -> Trigger {
         match self {
             Self::Crossing(crossing) => (*crossing).into(),
             Self::After(name, delay) => {
-                let event = events.iter().position(|event| event.name.as_ref() == Some(name));
-                Trigger::After { event: event.unwrap_or(events.len()), delay: *delay }
+                Trigger::After { event: Event::place_of(name, events).unwrap_or(events.len()), delay: *delay }
+            }
+            Self::AfterBurnout(name, delay) => {
+                Trigger::AfterBurnout { part: NamedPart::place_of(name, parts).unwrap_or(parts.len()), delay: *delay }
             }
         }
     }
 
-    /// The name of an event that is waited for, which must be that of one event alone; `place` is that of the condition.
-    pub(super) fn name_fault(&self, place: &str, events: &[Event]) -> Option<Fault> {
-        let Self::After(name, _) = self else { return None };
-        let named = events.iter().filter(|event| event.name.as_ref() == Some(name)).count();
-        let detail = match named {
-            0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
-            1 => return None,
-            _ => format!(
-                "must be the name of exactly one event, got {}, the name of {named} events",
-                shown(&json!(name))
-            ),
-        };
-        Some(Fault::new(format!("{place}/event"), detail))
+    /// What is wrong with the name of an event or a part that is waited for: it must be that of one event, or of a part with an engine;
+    /// `place` is that of the condition.
+    pub(super) fn name_fault(&self, place: &str, events: &[Event], parts: &[NamedPart]) -> Option<Fault> {
+        match self {
+            Self::Crossing(_) => None,
+            Self::After(name, _) => Event::name_fault(name, format!("{place}/event"), events),
+            Self::AfterBurnout(name, _) => NamedPart::name_fault(name, parts, true, format!("{place}/burnout")),
+        }
     }
 }
 
@@ -523,12 +710,18 @@ pub(super) struct EventReferences<'a> {
     parachutes: HashMap<&'a str, usize>,
     /// Takes components in the inertial frame to planet-fixed ones at t = 0.
     to_planet: Rotation,
+    /// The frames of steering.
+    axes: Axes,
+    /// That of the launch frame, clockwise from north, rad.
+    azimuth: f64,
+    parts: &'a [NamedPart],
 }
 
 impl<'a> EventReferences<'a> {
-    /// These events, with the rotation that takes components in the inertial frame to planet-fixed ones at t = 0.
-    pub(super) fn new(events: &'a [Event], to_planet: Rotation) -> Self {
+    /// These events and parts, with the frames of steering, and the azimuth of the launch, rad.
+    pub(super) fn new(events: &'a [Event], parts: &'a [NamedPart], axes: Axes, azimuth: f64) -> Self {
         let deploys = |(index, event): (usize, &'a Event)| Some((event.then.deployed.as_deref()?, index));
-        Self { parachutes: events.iter().enumerate().filter_map(deploys).collect(), to_planet }
+        let parachutes = events.iter().enumerate().filter_map(deploys).collect();
+        Self { parachutes, to_planet: axes.to_planet, axes, azimuth, parts }
     }
 }

@@ -323,6 +323,29 @@ impl ObjectReader<'_> {
         Some(numbers)
     }
 
+    /// Numbers by names.
+    pub fn numbers_by_name(&mut self, name: &'static str, bound: Bound) -> Option<Vec<(String, f64)>> {
+        let value = self.required(name)?;
+        let kind = kind_of(value);
+        let Value::Object(map) = value else {
+            return self.check(name, Err(format!("must be an object of numbers, got {kind}")));
+        };
+        let read = map.iter().map(|(key, value)| (key.clone(), bounded(value, bound))).collect::<Vec<_>>();
+        let count = read.len();
+        let mut numbers = Vec::new();
+        for (key, number) in read {
+            let place = format!("{name}/{}", key.replace('~', "~0").replace('/', "~1"));
+            match number {
+                Ok(number) => {
+                    self.list_number(&place, bound, "");
+                    numbers.push((key, number));
+                }
+                Err(detail) => self.fault_of(&place, detail),
+            }
+        }
+        (numbers.len() == count).then_some(numbers)
+    }
+
     /// Angles in the request's unit, so many at least and at most; the bound is in radians.
     pub fn angles(&mut self, name: &'static str, bound: Bound, counts: [usize; 2]) -> Option<Vec<f64>> {
         let unit = self.context.unit;

@@ -1,26 +1,33 @@
 //! The request of `/simulate`: its parts, stop, output and solver.
 
-use reentry::control::Control;
-use reentry::scenario::{self, Bound, Case, Equations, Scenario, Solver, Stop};
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::f64::consts::FRAC_PI_2;
+
+use reentry::coordinates::{FlightPath, PlanetFixed, horizon, launch_horizon};
+use reentry::scenario::{self, BodyCase, Bound, Case, Equations, Scenario, Solver, Stop};
 use reentry::trajectory::Sampling;
 use reentry::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::atmosphere::{Atmosphere, atmosphere};
 use super::columns::{AskedColumn, AvailableQuantities, COLUMNS, PROPELLANT};
-use super::control::control;
+use super::control::{ControlRequest, control};
 use super::description::{self, NameOr, Object, Words, word};
 use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
 use super::events::{Condition, Event, EventReferences, MOST_EVENTS, condition, event};
 use super::heating::{Heating, heating};
 use super::numbers::{MOST_VARIED, Numbers};
+use super::parts::NamedPart;
 use super::planet::{Planet, PlanetModel, planet};
 use super::reader::Fault;
 use super::schema::is;
 use super::sensitivities::{RequestedSensitivities, asked};
+use super::separation::Separation;
 use super::shown::shown;
-use super::state::{State, inertial_conditions, state};
+use super::state::{State, inertial_conditions, initial_state};
+use super::steering::Axes;
 use super::vehicle::vehicle;
 use super::wind::{Wind, wind};
 use super::{ANGLE_UNITS, AngleUnit};
@@ -41,7 +48,9 @@ pub struct SimulateRequest {
     pub density_factor: f64,
     pub wind: Wind,
     pub vehicle: Vehicle,
-    pub control: Control,
+    /// The parts of the vehicle, if it is made of any.
+    pub parts: Vec<NamedPart>,
+    pub control: ControlRequest,
     pub heating: Option<Heating>,
     pub events: Vec<Event>,
     pub initial_state: State,
@@ -231,12 +240,13 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let has_epoch = object.has("epoch");
     let initial_state = object
         .field("initial_state", "Initial state")
-        .doc("Position and velocity at t = 0, in one of six coordinate systems.")
-        .object(|object| state(object, has_epoch));
+        .doc("Position and velocity at t = 0, in one of six coordinate systems, or a launch.")
+        .object(|object| initial_state(object, has_epoch));
     inertial_conditions(object, "initial_state");
     let stop = object.field("stop", "Stop").doc("Conditions that end the flight.").default(json!({})).object(stop);
-    let parts: Vec<String> = Vec::new();
-    let separates = false;
+    let of_parts = vehicle.iter().flat_map(|(_, parts)| parts).map(|part| part.name.clone());
+    let parts: Vec<_> = of_parts.collect();
+    let separates = events.iter().flatten().any(|event| !event.then.separated.is_empty());
     let output = object
         .field("output", "Output rows")
         .doc("Rows and columns of the trajectory.")
@@ -250,6 +260,9 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let is_body = matches!(model, Some(PlanetModel::Body(_)));
     let assumed = AssumedDefaults { angle_unit: !given[0] && object.turns(), thesis_atmosphere: !given[1] && !is_body };
     let (stop, stop_when) = stop?;
+    let ((vehicle, parts), initial_state) = (vehicle?, initial_state?);
+    let mut events = events.unwrap_or_default();
+    events.extend(initial_state.is_held().then(Event::lift_off));
     Some(SimulateRequest {
         name,
         angle_unit: angle_unit?,
@@ -262,11 +275,12 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         atmosphere: atmosphere?,
         density_factor: density_factor?,
         wind: wind.unwrap_or(Wind::STILL),
-        vehicle: vehicle?,
+        vehicle,
+        parts,
         control: control?,
         heating,
-        events: events.unwrap_or_default(),
-        initial_state: initial_state?,
+        events,
+        initial_state,
         stop,
         stop_when,
         output: output?,
@@ -378,15 +392,20 @@ fn stop(object: &mut Object) -> Option<(Stop, Vec<Condition>)> {
         .unit("m")
         .optional()
         .number(Bound::DISTANCE);
-    let when = object
+    let when = conditions(object);
+    Some((Stop { altitude: altitude?, time: time?, ceiling, when: Vec::new() }, when.unwrap_or_default()))
+}
+
+/// Further conditions that end a flight.
+pub(super) fn conditions(object: &mut Object) -> Option<Vec<Condition>> {
+    object
         .field("when", "Conditions")
         .doc(
             "Further conditions; each of them ends the flight. If several are met at the same instant, the response \
              names the first in the list.",
         )
         .optional()
-        .objects([0, MOST_EVENTS], condition);
-    Some((Stop { altitude: altitude?, time: time?, ceiling, when: Vec::new() }, when.unwrap_or_default()))
+        .objects([0, MOST_EVENTS], condition)
 }
 
 /// The fields of which one says which rows there are.
@@ -558,16 +577,15 @@ impl SimulateRequest {
     /// What there is to know at an instant of the flight.
     pub fn known(&self) -> AvailableQuantities {
         let air = &self.atmosphere.core;
-        let has_parts = false;
         AvailableQuantities {
             temperature: air.has_temperature(),
             speed_of_sound: air.has_speed_of_sound(),
             pressure: air.has_pressure(),
             epoch: self.epoch,
             heating: self.heating.is_some(),
-            changing_mass: has_parts || self.events.iter().any(Event::changes_mass),
-            thrust: has_parts || self.events.iter().any(Event::changes_thrust),
-            parts: has_parts,
+            changing_mass: !self.parts.is_empty() || self.events.iter().any(Event::changes_mass),
+            thrust: !self.parts.is_empty() || self.events.iter().any(Event::changes_thrust),
+            parts: !self.parts.is_empty(),
             planet: self.planet.core,
             is_on_earth: self.planet.is_earth(),
             sidereal_angle: self.initial_state.sidereal_angle(self.epoch, self.angle_unit, &self.planet),
@@ -576,16 +594,16 @@ impl SimulateRequest {
 
     pub(super) fn try_into_scenario(&self) -> Result<Scenario, Vec<Fault>> {
         let planet = self.planet.core;
-        let when = self.stop_when.iter().map(|when| when.to_core(&self.events)).collect();
-        let stop = Stop { when, ..self.stop.clone() };
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
-        let mut across = Event::area_faults(&self.events, &self.vehicle);
-        across.extend(Event::parachute_faults(&self.events));
         let is_angle_known = self.initial_state.gives_sidereal()
             || self.epoch.is_none_or(|epoch| self.planet.rotation_angle(epoch).is_some());
-        across.extend(Event::frame_faults(&self.events, is_angle_known));
-        across.extend(self.name_faults());
-        let of_planet: Vec<_> = scenario::planet_faults(&planet, &stop).iter().map(fault).collect();
+        let vehicle = self.vehicle_flown();
+        let mut across = vehicle.faults(is_angle_known);
+        across.extend(Separation::name_faults(&self.events, "", &mut HashSet::new()));
+        if self.initial_state.is_held() {
+            across.extend(Event::lift_off_faults(&self.events));
+        }
+        let of_planet: Vec<_> = scenario::planet_faults(&planet, &self.stop).iter().map(fault).collect();
         let (initial_state, orientation) = match initial_state {
             Ok(initial_state) if of_planet.is_empty() => initial_state,
             other => {
@@ -593,44 +611,192 @@ impl SimulateRequest {
                 return Err(of_planet.into_iter().chain(across).chain(of_state).collect());
             }
         };
-        let references = EventReferences::new(&self.events, orientation.to_planet);
-        let case = Case {
-            planet,
-            atmosphere: self.atmosphere.core.clone(),
-            density_factor: self.density_factor,
-            wind: self.wind.core.clone(),
-            vehicle: self.vehicle.clone(),
-            parts: Vec::new(),
-            control: self.control.clone(),
-            steering: reentry::steering::Steering::default(),
-            heating: self.heating.as_ref().map(|heating| heating.core),
-            events: self.events.iter().map(|event| event.to_core(&self.events, &references)).collect(),
-            start_time: 0.0,
-            initial_state,
-            hold_down: false,
-            origin: None,
-            stop,
-            solver: self.solver,
-            bodies: Vec::new(),
-        };
+        let origin = self.initial_state.launch(&planet);
+        let launch = origin.map_or_else(|| horizon(&initial_state), |origin| launch_horizon(&origin, &planet.shape));
+        let heading = FlightPath::from_planet_fixed(&initial_state).heading;
+        let azimuth = self.initial_state.launch_azimuth().unwrap_or(FRAC_PI_2 - heading);
+        let axes = Axes { launch, to_planet: orientation.to_planet };
+        let frames = Frames { axes, azimuth, initial_state, origin };
+        let case = Case { hold_down: self.initial_state.is_held(), ..self.case_of(&vehicle, &frames) };
         match Scenario::new(case) {
             Ok(scenario) if across.is_empty() => Ok(scenario),
             Ok(_) => Err(across),
             Err(error) => {
-                // A name of no event is among the faults, with the name.
-                let of_core = error.0.iter().filter(|fault| !matches!(fault, scenario::Fault::NoSuchEvent { .. }));
-                Err(of_core.map(fault).chain(across).collect())
+                // A name of no event or part is among the faults, with the name.
+                let of_core = error.0.iter().filter(|fault| !is_of_name(fault));
+                Err(of_core.map(|it| self.fault_of_part(it).unwrap_or_else(|| fault(it))).chain(across).collect())
             }
         }
     }
 
-    /// Events that are waited for by a name that none of them has, or several.
+    /// The vehicle that flies, with all that happens to it.
+    fn vehicle_flown(&self) -> Flown<'_> {
+        Flown {
+            vehicle: Some(self.vehicle.clone()),
+            parts: Cow::Borrowed(&self.parts),
+            control: &self.control,
+            events: &self.events,
+            stop: self.stop.clone(),
+            stop_time: None,
+            stop_when: &self.stop_when,
+        }
+    }
+
+    /// The case of what flies.
+    fn case_of(&self, flown: &Flown, frames: &Frames) -> Case {
+        let Flown { parts, events, control, .. } = flown;
+        let references = EventReferences::new(events, parts, frames.axes, frames.azimuth);
+        let (mut core_events, mut bodies) = (Vec::with_capacity(events.len()), Vec::new());
+        for event in *events {
+            core_events.push(event.to_core(events, &references, bodies.len()));
+            for separation in &event.then.separated {
+                let body = flown.body(separation, "");
+                bodies.push(BodyCase { case: self.case_of(&body, frames), stop_time: body.stop_time });
+            }
+        }
+        let when = flown.stop_when.iter().map(|when| when.to_core(events, parts)).collect();
+        let vehicle = flown.vehicle.clone().unwrap_or_else(|| self.vehicle.clone());
+        let heating = self.heating.as_ref().map(|heating| heating.core);
+        Case {
+            planet: self.planet.core,
+            atmosphere: self.atmosphere.core.clone(),
+            density_factor: self.density_factor,
+            wind: self.wind.core.clone(),
+            parts: parts.iter().map(|part| part.core.clone()).collect(),
+            control: control.to_core(events),
+            steering: control.steering.as_ref().map_or_else(Default::default, |it| it.to_core(events, &frames.axes)),
+            // What leaves has no heat flux without a nose.
+            heating: heating.filter(|_| flown.is_whole() || vehicle.nose_radius.is_some()),
+            vehicle,
+            events: core_events,
+            start_time: 0.0,
+            initial_state: frames.initial_state,
+            hold_down: false,
+            origin: frames.origin,
+            stop: Stop { when, ..flown.stop.clone() },
+            solver: self.solver,
+            bodies,
+        }
+    }
+
+    /// A fault of the exit area of a part, which the thrust at sea level may define.
+    fn fault_of_part(&self, fault: &scenario::Fault) -> Option<Fault> {
+        let scenario::Fault::NoPressure { field } = fault else { return None };
+        let index: usize = field.split('.').nth(2)?.parse().ok()?;
+        let pointer = self.parts.get(index)?.exit_area_pointer();
+        Some(Fault::new(format!("/vehicle/parts/{index}/{pointer}"), fault.to_string()))
+    }
+}
+
+/// Whether a fault is that of a name, of which the request has one with the name itself.
+fn is_of_name(fault: &scenario::Fault) -> bool {
+    match fault {
+        scenario::Fault::NoSuchEvent { .. }
+        | scenario::Fault::NoSuchEngine { .. }
+        | scenario::Fault::NoSuchPart { .. } => true,
+        // What is wrong with its parts is said of those of the vehicle.
+        scenario::Fault::OfBody { fault, .. } => {
+            is_of_name(fault) || matches!(**fault, scenario::Fault::NoPressure { .. } | scenario::Fault::SphericalParts)
+        }
+        _ => false,
+    }
+}
+
+/// What flies: the vehicle, or a body that leaves it, with all that happens to it.
+struct Flown<'a> {
+    /// None of a body whose aerodynamics are not known.
+    vehicle: Option<Vehicle>,
+    parts: Cow<'a, [NamedPart]>,
+    control: &'a ControlRequest,
+    events: &'a [Event],
+    /// Without its further conditions.
+    stop: Stop,
+    /// Of a body, where it is given, s.
+    stop_time: Option<f64>,
+    stop_when: &'a [Condition],
+}
+
+impl Flown<'_> {
+    /// Whether it is the vehicle itself.
+    fn is_whole(&self) -> bool {
+        matches!(self.parts, Cow::Borrowed(_))
+    }
+
+    /// The body of a separation; `pointer` is that of the separation.
+    fn body<'b>(&self, separation: &'b Separation, pointer: &str) -> Flown<'b> {
+        let parts = separation.parts_of(&self.parts);
+        Flown {
+            vehicle: separation.vehicle(&parts, pointer).ok(),
+            parts: Cow::Owned(parts),
+            control: &separation.control,
+            events: &separation.events,
+            stop: separation.stop(&self.stop),
+            stop_time: separation.stop.time,
+            stop_when: &separation.stop.when,
+        }
+    }
+
+    /// What is wrong across its fields, and across those of the bodies that leave it.
+    fn faults(&self, is_angle_known: bool) -> Vec<Fault> {
+        let Self { events, control, parts, .. } = self;
+        let mut faults = match &self.vehicle {
+            Some(vehicle) => Event::area_faults(events, vehicle),
+            None => Vec::new(),
+        };
+        faults.extend(Event::parachute_faults(events));
+        faults.extend(Event::frame_faults(events, is_angle_known));
+        faults.extend(Event::part_faults(events, parts));
+        if self.is_whole() {
+            faults.extend(NamedPart::faults(parts, "/vehicle/parts"));
+        }
+        faults.extend(self.name_faults());
+        if let Some(steering) = &control.steering {
+            if parts.is_empty() {
+                let detail = "requires vehicle.parts: it points their engines";
+                faults.push(Fault::new("/control/steering", detail));
+            }
+            let by_axis = steering.is_attitude() && control.angle_of_attack.is_given();
+            let detail = "must be omitted: the steering defines the angle of attack; only \"velocity\" takes it";
+            faults.extend(by_axis.then(|| Fault::new("/control/angle_of_attack", detail)));
+        }
+        for (index, event) in events.iter().enumerate() {
+            for (place, separation) in event.then.separated.iter().enumerate() {
+                let pointer = format!("/events/{index}/then/separate/{place}");
+                let missing = separation.vehicle(&separation.parts_of(parts), &pointer).err();
+                faults.extend(missing.into_iter().flatten());
+                let of_body = self.body(separation, &pointer).faults(is_angle_known);
+                faults.extend(
+                    of_body
+                        .into_iter()
+                        .map(|Fault { pointer: of, detail }| Fault::new(format!("{pointer}{of}"), detail)),
+                );
+            }
+        }
+        faults
+    }
+
+    /// Events that are waited for by a name that none of them has, or several, and parts without a name.
     fn name_faults(&self) -> Vec<Fault> {
         let events = self.events.iter().enumerate();
         let events = events.map(|(index, event)| (format!("/events/{index}/when"), &event.when));
         let stops = self.stop_when.iter().enumerate().map(|(index, when)| (format!("/stop/when/{index}"), when));
-        events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, &self.events)).collect()
+        let conditions =
+            events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, self.events, &self.parts));
+        let steers = self.events.iter().enumerate().filter_map(|(index, event)| {
+            Some(event.then.steering.as_ref()?.name_faults(&format!("/events/{index}/then/steer"), self.events))
+        });
+        conditions.chain(self.control.name_faults(self.events)).chain(steers.flatten()).collect()
     }
+}
+
+/// From where and how a flight starts, for all that fly.
+struct Frames {
+    axes: Axes,
+    /// Of the launch frame, clockwise from north, rad.
+    azimuth: f64,
+    initial_state: PlanetFixed<f64>,
+    /// From where ranges are measured, of a launch.
+    origin: Option<PlanetFixed<f64>>,
 }
 
 /// A fault that the core found, at the field of the request that it concerns.

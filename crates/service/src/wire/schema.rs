@@ -167,8 +167,9 @@ impl<'a> ObjectSchema<'a> {
         self.require(json!({"oneOf": sets.map(|[one, _]| json!({"required": [one]}))}));
     }
 
-    /// The fields and the conditions that `describe` adds belong to the object where one of the fields, `name`, is given.
-    pub fn alternative(&mut self, name: &str, describe: impl FnOnce(&mut Self)) {
+    /// The fields and the conditions that `describe` adds belong to the object where one of the fields, `name`, is given; those that are `shared`
+    /// belong to others of its kind as well.
+    pub fn alternative(&mut self, name: &str, shared: &[&str], describe: impl FnOnce(&mut Self)) {
         let (known, required, conditions) = (self.properties.len(), self.required.len(), self.all_of.len());
         let outer = std::mem::take(&mut self.conditions);
         describe(self);
@@ -178,7 +179,8 @@ impl<'a> ObjectSchema<'a> {
         if !own.is_empty() {
             conditions.push(Value::Object(own));
         }
-        let others = self.properties.keys().skip(known).filter(|other| *other != name);
+        let others =
+            self.properties.keys().skip(known).filter(|other| *other != name && !shared.contains(&other.as_str()));
         let absent: Map<_, _> = others.map(|other| (other.clone(), json!(false))).collect();
         let mut keywords = json!({"if": {"required": [name]}, "else": {"properties": absent}});
         if !conditions.is_empty() {

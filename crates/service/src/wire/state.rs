@@ -3,7 +3,7 @@
 pub mod answer;
 mod fields;
 
-pub use fields::{FRAMES, inertial_conditions, state};
+pub use fields::{FRAMES, inertial_conditions, initial_state, state};
 
 use reentry::coordinates::{
     self, FlightPath, Geodetic, Inertial, InertialFlightPath, OrbitShape, OrbitalElements, PlanetFixed, Rotation,
@@ -45,6 +45,8 @@ pub enum Coordinates {
     Geodetic(Geodetic),
     /// Planet-fixed vectors.
     Ecef(PlanetFixed<f64>),
+    /// At rest on the ground, at a place whose azimuth is that of the launch.
+    Launch { place: Geodetic, hold_down: bool },
     /// Inertial vectors.
     Eci(Inertial),
     /// An orbit.
@@ -115,7 +117,7 @@ impl Coordinates {
             | Self::InertialFlightPath { height, geocentric_latitude, .. } => {
                 height.faults(pointer, *geocentric_latitude, planet)
             }
-            Self::Geodetic(state) => {
+            Self::Geodetic(state) | Self::Launch { place: state, .. } => {
                 // The altitude must not reach down beyond the centre, to the other side.
                 let foot = Geodetic { geodetic_altitude: 0.0, ..*state };
                 let [here, foot] = [*state, foot].map(|state| state.to_planet_fixed(&planet.shape).position);
@@ -156,7 +158,7 @@ impl Coordinates {
                 };
                 state.to_planet_fixed(planet)
             }
-            Self::Geodetic(state) => state.to_planet_fixed(&planet.shape),
+            Self::Geodetic(state) | Self::Launch { place: state, .. } => state.to_planet_fixed(&planet.shape),
             Self::Ecef(state) => state,
             Self::Eci(state) => state.to_planet_fixed_by(planet, to_planet),
             Self::OrbitalElements { shape, eccentricity, inclination, raan, argument_of_periapsis, anomaly } => {
@@ -207,6 +209,27 @@ fn orbit_faults(pointer: &str, shape: OrbitShape, e: f64, anomaly: Anomaly) -> V
 }
 
 impl State {
+    /// Whether a launch holds the vehicle on the ground until it lifts off.
+    pub fn is_held(&self) -> bool {
+        matches!(self.coordinates, Coordinates::Launch { hold_down: true, .. })
+    }
+
+    /// The azimuth of a launch, clockwise from north, rad; none of another state.
+    pub fn launch_azimuth(&self) -> Option<f64> {
+        match self.coordinates {
+            Coordinates::Launch { place, .. } => Some(place.azimuth),
+            _ => None,
+        }
+    }
+
+    /// The place of a launch, as planet-fixed position, and its azimuth as a velocity; none of another state.
+    pub fn launch(&self, planet: &CorePlanet) -> Option<PlanetFixed<f64>> {
+        match self.coordinates {
+            Coordinates::Launch { place, .. } => Some(Geodetic { speed: 1.0, ..place }.to_planet_fixed(&planet.shape)),
+            _ => None,
+        }
+    }
+
     /// Whether the state itself gives the angle between its frames.
     pub fn gives_sidereal(&self) -> bool {
         self.sidereal != Sidereal::default()

@@ -6,12 +6,24 @@ use reentry::scenario::Bound;
 use reentry::vehicle::{Aerodynamics, AlphaMachTable, MachTable, Vehicle};
 
 use super::description::{Object, variant};
+use super::parts::{MOST_PARTS, NamedPart, part};
 use super::reader::{MOST_COLUMNS, MOST_ENTRIES, MOST_ROWS};
 
-/// The vehicle.
-pub(super) fn vehicle(object: &mut Object) -> Option<Vehicle> {
+/// The vehicle and its parts.
+pub(super) fn vehicle(object: &mut Object) -> Option<(Vehicle, Vec<NamedPart>)> {
     object.named("Vehicle", "Vehicle: a point mass with lift and drag.");
-    let mass = object.field("mass", "Mass").doc("Mass of the vehicle, kg.").unit("kg").number(Bound::POSITIVE);
+    let mass = object
+        .field("mass", "Mass")
+        .doc("Mass of the vehicle, kg. Exactly one of `mass` and `parts` must be given.")
+        .unit("kg")
+        .optional()
+        .number(Bound::POSITIVE);
+    let parts = object
+        .field("parts", "Parts")
+        .doc("Parts of the vehicle, such as stages, boosters, fairing and payload. Their masses are that of the vehicle.")
+        .optional()
+        .objects([1, MOST_PARTS], part);
+    object.exactly_one(&["mass", "parts"]);
     let reference_area = object.only_unless("aerodynamics/type", "ballistic", |object| {
         object
             .field("reference_area", "Reference area")
@@ -33,7 +45,10 @@ pub(super) fn vehicle(object: &mut Object) -> Option<Vehicle> {
     let aerodynamics = aerodynamics?;
     // Ratios refer to no area: any does.
     let any_area = matches!(aerodynamics, Aerodynamics::Ballistic { .. }).then_some(1.0);
-    Some(Vehicle { mass: mass?, reference_area: reference_area.or(any_area)?, aerodynamics, nose_radius })
+    let of_parts = parts.as_ref().map(|parts| parts.iter().map(|part| part.core.mass()).sum());
+    let mass = mass.or(of_parts)?;
+    let vehicle = Vehicle { mass, reference_area: reference_area.or(any_area)?, aerodynamics, nose_radius };
+    Some((vehicle, parts.unwrap_or_default()))
 }
 
 /// The coefficients of a vehicle.

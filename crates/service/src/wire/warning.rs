@@ -11,7 +11,6 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::bodies::{DescribedBody, FlownBody};
-use super::control::is_given;
 use super::epoch::Epoch;
 use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
@@ -55,7 +54,7 @@ impl Warning {
         purpose: Purpose,
     ) -> Vec<Self> {
         let flight = vehicle.flight;
-        let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit, vehicle.described);
+        let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit, &vehicle.described);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
         warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
         warnings
@@ -65,7 +64,7 @@ impl Warning {
         let later = request.events.iter().filter_map(|event| event.then.core.aerodynamics.as_ref());
         let mut flown = std::iter::once(&request.vehicle.aerodynamics).chain(later);
         let by_angle_of_attack = flown.any(|aerodynamics| matches!(aerodynamics, Aerodynamics::AlphaMachTable(_)));
-        if is_given(&request.control.angle_of_attack) && !by_angle_of_attack {
+        if request.control.angle_of_attack.is_given() && !by_angle_of_attack {
             let detail = "control.angle_of_attack has no effect: only an alpha_mach_table depends on it";
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
@@ -84,7 +83,7 @@ impl Warning {
     /// What there is to know of the flight of a body.
     pub fn of_body(request: &SimulateRequest, body: &FlownBody) -> Vec<Self> {
         let warnings = body.flight.warnings().iter();
-        warnings.map(|warning| Self::of_flight(*warning, request.angle_unit, body.described)).collect()
+        warnings.map(|warning| Self::of_flight(*warning, request.angle_unit, &body.described)).collect()
     }
 
     /// Angles were read in the default unit.
@@ -159,7 +158,7 @@ impl Warning {
         Self::new("wind_left_out", detail)
     }
 
-    fn of_flight(warning: trajectory::Warning, unit: AngleUnit, of: DescribedBody) -> Self {
+    fn of_flight(warning: trajectory::Warning, unit: AngleUnit, of: &DescribedBody) -> Self {
         let (code, detail) = match warning {
             trajectory::Warning::LiftFadedNearVertical { time } => {
                 let (angle, from) = (Angle(LIFT_FADE_ANGLE, unit), seconds(time));
@@ -435,7 +434,7 @@ mod tests {
         ] {
             let time = 52.916_530_598_660_5;
             let warning = CoreWarning::OutsideTable { table, time, altitude: 109_054.394_121_244_55, edge, above };
-            let warning = Warning::of_flight(warning, AngleUnit::Deg, DescribedBody::default());
+            let warning = Warning::of_flight(warning, AngleUnit::Deg, &DescribedBody::default());
             let code = if table == TableId::Us76 { "outside_model" } else { "outside_table" };
             assert_eq!((warning.code, warning.time, warning.detail.as_str()), (code, Some(time), expected));
         }

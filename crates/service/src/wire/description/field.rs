@@ -310,6 +310,43 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
         )
     }
 
+    /// Objects, so many at least and at most, whose schema another field writes under this name: such as stand within themselves.
+    pub fn objects_again<T>(
+        self,
+        counts: [usize; 2],
+        component: &'static str,
+        read: impl Fn(&mut Object) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        self.take(
+            |_| schema::list(&schema::reference(component), counts),
+            |reader, name| reader.objects(name, counts, |object| reading(object, &read)),
+        )
+    }
+
+    /// A number, or null.
+    pub fn number_or_null(self, bound: Bound) -> Option<Option<f64>> {
+        let unit = self.unit;
+        self.take(
+            |_| {
+                let mut schema = schema::number(bound);
+                schema["type"] = json!(["number", "null"]);
+                schema
+            },
+            |reader, name| match reader.required(name)? {
+                Value::Null => Some(None),
+                _ => reader.number(name, bound, unit).map(Some),
+            },
+        )
+    }
+
+    /// Numbers by names, which the request chooses.
+    pub fn numbers_by_name(self, bound: Bound) -> Option<Vec<(String, f64)>> {
+        self.take(
+            |_| json!({"type": "object", "additionalProperties": schema::number(bound)}),
+            |reader, name| reader.numbers_by_name(name, bound),
+        )
+    }
+
     /// An angle, in radians as its bound, or an object.
     pub fn angle_or<T>(
         self,

@@ -1,19 +1,32 @@
 //! The fields of a state, by its kind.
 
-use reentry::coordinates::{Geodetic, Inertial, OrbitShape, PlanetFixed};
+use reentry::coordinates::{Geodetic, Inertial, OrbitShape, PlanetFixed, Site};
 use reentry::scenario::Bound;
 use serde_json::{Value, json};
 
 use super::{Anomaly, Coordinates, Frame, Height, Sidereal, State};
-use crate::wire::description::{Object, Words, variant, word};
+use crate::wire::description::{Object, Variant, Words, variant, word};
 use crate::wire::epoch::{self, SiderealTime};
+use crate::wire::reader::text;
+use crate::wire::sites::{ListedSite, slug_schema};
 
 /// A state of any kind.
 ///
 /// Without an epoch, the time since its frames were aligned is 0 where it does not say otherwise.
 pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
     object.named("State", "State in one of six coordinate systems. Angles are in `angle_unit`.");
-    object.variants(
+    any_state(object, has_epoch, &[])
+}
+
+/// A state of any kind, or a launch.
+pub fn initial_state(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named("InitialState", "State in one of six coordinate systems, or a launch. Angles are in `angle_unit`.");
+    let launch = |object: &mut Object| launch(object, has_epoch);
+    any_state(object, has_epoch, &[variant("launch", "Launch", "At rest on the rotating planet.", &launch)])
+}
+
+fn any_state(object: &mut Object, has_epoch: bool, more: &[Variant<State>]) -> Option<State> {
+    object.variants_of(
         "Kind of state.",
         &[
             variant(
@@ -45,7 +58,70 @@ pub fn state(object: &mut Object, has_epoch: bool) -> Option<State> {
                 &|object| inertial_flight_path(object, has_epoch),
             ),
         ],
+        more,
     )
+}
+
+/// What a launch site is given by.
+const SITE: &str = "site";
+
+fn launch(object: &mut Object, has_epoch: bool) -> Option<State> {
+    object.named(
+        "Launch",
+        "Launch: at rest on the rotating planet, at a site or at a place. Exactly one of `site` and \
+         `geodetic_latitude` must be given.",
+    );
+    let place = object.alternatives(&[(SITE, &launch_site), ("geodetic_latitude", &launch_place)]);
+    let azimuth = object
+        .field("azimuth", "Azimuth")
+        .doc(
+            "Azimuth of the launch, clockwise from north, within ±2π (±360°). It defines the launch frame of steering \
+             programs, the direction of `tilt` and that of `downrange`.",
+        )
+        .default(0.0)
+        .angle(Bound::TURN);
+    let hold_down = object
+        .field("hold_down", "Hold down")
+        .doc(
+            "Whether the vehicle is held in place, with its engines burning, until thrust, gravity and centrifugal \
+             force together point upward. This is the event `liftoff` of the response.",
+        )
+        .default(true)
+        .boolean();
+    let sidereal = sidereal(object, has_epoch);
+    let place = Geodetic { azimuth: azimuth?, ..place? };
+    let coordinates = Coordinates::Launch { place, hold_down: hold_down? };
+    Some(State { coordinates, frame: None, sidereal })
+}
+
+fn launch_site(object: &mut Object) -> Option<Geodetic> {
+    let site = object
+        .field(SITE, "Site")
+        .doc("Slug of a site that `GET /sites` lists; it gives latitude, longitude and altitude.")
+        .optional()
+        .value(slug_schema, |value| ListedSite::read(&text(value)?))?;
+    let Site { longitude, geodetic_latitude } = site.place();
+    Some(at_rest(site.geodetic_altitude, longitude, geodetic_latitude))
+}
+
+fn launch_place(object: &mut Object) -> Option<Geodetic> {
+    let geodetic_latitude = object
+        .field("geodetic_latitude", "Geodetic latitude")
+        .doc("Geodetic latitude, north positive, within ±π/2 (±90°).")
+        .optional()
+        .angle(Bound::QUARTER_TURN);
+    let longitude = longitude(object);
+    let geodetic_altitude = object
+        .field("geodetic_altitude", "Geodetic altitude")
+        .doc("Altitude above the surface along its normal, m.")
+        .unit("m")
+        .default(0.0)
+        .number(Bound::DISTANCE);
+    Some(at_rest(geodetic_altitude?, longitude?, geodetic_latitude?))
+}
+
+fn at_rest(geodetic_altitude: f64, longitude: f64, geodetic_latitude: f64) -> Geodetic {
+    Geodetic { geodetic_altitude, longitude, geodetic_latitude, speed: 0.0, flight_path_angle: 0.0, azimuth: 0.0 }
 }
 
 /// The planet-fixed longitude.
