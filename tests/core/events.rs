@@ -59,8 +59,8 @@ fn of(quantity: Quantity, point: &FlightPoint) -> f64 {
         Quantity::SpecificEnergy => point.specific_energy,
         Quantity::ApoapsisAltitude => orbit(point).semi_major_axis() * (1.0 + orbit(point).0.eccentricity) - RADIUS,
         Quantity::PeriapsisAltitude => orbit(point).semi_major_axis() * (1.0 - orbit(point).0.eccentricity) - RADIUS,
-        Quantity::Inclination => orbit(point).0.inclination,
         Quantity::Eccentricity => orbit(point).0.eccentricity,
+        Quantity::Inclination => orbit(point).0.inclination,
         Quantity::HeatFlux => point.loads.heat_flux.unwrap().total(),
         Quantity::HeatLoad => point.heat_load.unwrap(),
         Quantity::WallTemperature => point.wall_temperature.unwrap(),
@@ -103,12 +103,13 @@ const QUANTITIES: [Quantity; 7] = [
 ];
 
 /// Those beside these that change on every flight with heating.
-const OTHER_QUANTITIES: [Quantity; 13] = [
+const OTHER_QUANTITIES: [Quantity; 14] = [
     Quantity::AirSpeed,
     Quantity::InertialSpeed,
     Quantity::SpecificEnergy,
     Quantity::ApoapsisAltitude,
     Quantity::PeriapsisAltitude,
+    Quantity::Eccentricity,
     Quantity::Inclination,
     Quantity::HeatFlux,
     Quantity::HeatLoad,
@@ -185,6 +186,43 @@ fn every_crossing_is_found_where_it_first_is() {
         }
     }
     assert!(met > 1200 && missed > 20, "{met} met, {missed} not");
+}
+
+/// An unbound orbit has no apoapsis: no condition on it is met, until the air has made an ellipse of the orbit.
+#[test]
+fn an_unbound_orbit_never_meets_a_condition_on_its_apoapsis() {
+    let start = FlightPath {
+        speed: 12_000.0,
+        flight_path_angle: -0.12,
+        ..FlightPath::from_planet_fixed(&capsule().initial_state)
+    };
+    let values = [-6e6, 1e5, 4e5, 1e9, 1e12];
+    let marks = |values: &[f64]| {
+        let both = |value: &f64| [rises, falls].map(|way| mark(way(Quantity::ApoapsisAltitude, *value)));
+        values.iter().flat_map(both).collect::<Vec<_>>()
+    };
+    let stop = Stop { time: 20_000.0, ..Stop::default() };
+    let away = FlightPath { flight_path_angle: 0.1, ..start };
+    let [past, captured] = [away, start].map(|state| Case {
+        events: marks(&values),
+        initial_state: state.to_planet_fixed(),
+        stop: stop.clone(),
+        ..capsule()
+    });
+    let past = fly(&in_vacuum(past));
+    assert!(orbit(&past.last()).0.eccentricity > 1.0);
+    assert_eq!(events(&past).len(), 0, "{:?}", events(&past));
+    let captured = fly(&captured);
+    assert!(orbit(&captured.initial()).0.eccentricity > 1.0);
+    let met: Vec<_> = events(&captured);
+    // Downward through each, the farthest first; that at the centre is behind the ground.
+    assert_eq!(met.iter().map(|event| event.event).collect::<Vec<_>>(), [9, 7, 5, 3]);
+    for event in &met {
+        assert!(orbit(&event.before).0.eccentricity < 1.0);
+        let apoapsis = of(Quantity::ApoapsisAltitude, &event.before);
+        // 1 - e of 1e12 m is 7e-6, of which the conversion knows ten digits.
+        near("apoapsis", apoapsis, values[event.event / 2], 1e-8 * apoapsis.abs() + 1e-8 * RADIUS);
+    }
 }
 
 /// A quantity that passes a value and comes back within a step is seen: here peaks by a part in 10^4, and the dip over the ground.

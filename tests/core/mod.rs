@@ -24,6 +24,7 @@ mod phases;
 mod pitfalls;
 mod properties;
 mod propulsion;
+mod schedules;
 mod sensitivities;
 mod starts;
 mod stiffness;

@@ -111,10 +111,11 @@ fn angles_follow_their_schedule() {
 #[test]
 fn changes_are_met_and_not_ground_down() {
     let smooth = fly(&glide()).statistics();
-    for against in [Against::Time, Against::Altitude, Against::Speed] {
+    for against in [Against::Time, Against::Altitude, Against::Speed, Against::Energy] {
         let (first, last) = match against {
             Against::Time => (50.0, 800.0),
             Against::Altitude => (5e3, 100e3),
+            Against::Energy => (-6.2e7, -3.4e7),
             _ => (300.0, 7400.0),
         };
         let at: Vec<f64> = (0..20).map(|i| first + (last - first) * f64::from(i) / 19.0).collect();
@@ -230,6 +231,7 @@ fn random_models() -> impl Strategy<Value = Case> {
         (Against::Altitude, [10e3, 35e3, 60e3]),
         (Against::Speed, [500.0, 2000.0, 5000.0]),
         (Against::Mach, [2.0, 6.0, 15.0]),
+        (Against::Energy, [-6.2e7, -6e7, -4e7]),
     ]);
     let interpolation = prop::sample::select(vec![Interpolation::Linear, Interpolation::Step]);
     let bank = (against, interpolation, prop::array::uniform3(-1.5..1.5))

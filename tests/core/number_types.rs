@@ -261,6 +261,8 @@ fn sensitivities_hold_across_changes_of_formula() {
         ("steps in speed", by(Against::Speed, &[0.0, 1200.0, 2500.0], Interpolation::Step)),
         ("steps in time", by(Against::Time, &[0.0, 40.0, 60.0], Interpolation::Step)),
         ("lines in speed", by(Against::Speed, &[500.0, 1200.0, 2500.0], Interpolation::Linear)),
+        ("steps in energy", by(Against::Energy, &[-7e7, -6.2e7, -5.9e7], Interpolation::Step)),
+        ("lines in energy", by(Against::Energy, &[-6.25e7, -6.1e7, -5.8e7], Interpolation::Linear)),
     ] {
         agrees_with_differences(what, &Case { control, ..target_2() });
     }

@@ -11,7 +11,7 @@ use reentry::planet::{Gravity, Zonal};
 use reentry::propulsion::{Impulse, Thrust, ThrustAxis};
 use reentry::sensitivity::{Moment, Moved, Output, Slopes, Variation, slopes};
 use reentry::trajectory::FlightPoint;
-use reentry::vehicle::MachTable;
+use reentry::vehicle::{AlphaMachTable, MachTable};
 use reentry::wind::WindTable;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};
 
@@ -270,4 +270,98 @@ fn slopes_by_the_numbers_of_the_models_are_differences() {
         other => panic!("{other:?}"),
     });
     agree_with_differences("exponential, spherical", &spherical(eventful()), &[scale]);
+}
+
+/// The corners of a schedule against the energy come sooner or later with whatever the energy depends on, the planet's numbers included.
+#[test]
+fn slopes_by_a_schedule_against_energy_are_differences() {
+    for interpolation in [Interpolation::Linear, Interpolation::Step] {
+        let banks = move |at: f64, value: f64| {
+            let at = [-6.4e7, -6.1e7 + at, -4e7];
+            let schedule = Schedule::new(Against::Energy, &at, &[0.3, 1.0 + value, -0.4], interpolation);
+            Control { bank_angle: Command::Schedule(Arc::new(schedule.unwrap())), ..Control::banked(0.0) }
+        };
+        let gravity = Gravity::Zonal(Zonal { coefficients: [1.08e-3, -2.5e-6, -1.6e-6] });
+        let aerodynamics = Aerodynamics::Constant { lift_coefficient: 0.4, drag_coefficient: 1.3 };
+        let case = Case {
+            planet: Planet { gravity, ..Planet::EARTH_WGS84 },
+            vehicle: Vehicle { aerodynamics, nose_radius: Some(0.8), ..capsule().vehicle },
+            heating: Some(heating()),
+            control: banks(0.0, 0.0),
+            events: vec![at_altitude(50e3, Effect::default())],
+            ..capsule()
+        };
+        let numbers = [
+            number("entry of energy", 1e6, move |case, offset| case.control = banks(offset, 0.0)),
+            number("bank angle", 1.0, move |case, offset| case.control = banks(0.0, offset)),
+            number("gravitational parameter", 1e14, |case, offset| case.planet.gravitational_parameter += offset),
+            number("rotation rate", 1e-5, |case, offset| case.planet.rotation_rate += offset),
+            number("speed", 1e3, set_state(3)),
+            number("latitude", 0.1, set_state(2)),
+            number("mass", 3000.0, |case, offset| case.vehicle.mass += offset),
+        ];
+        agree_with_differences(&format!("{interpolation:?} in energy"), &case, &numbers);
+        agree_with_differences(&format!("{interpolation:?} in energy, spherical"), &spherical(case), &numbers[..5]);
+    }
+}
+
+/// A schedule since an event goes with the event.
+#[test]
+fn slopes_by_a_schedule_since_an_event_are_differences() {
+    for interpolation in [Interpolation::Linear, Interpolation::Step] {
+        let schedule = move |event: usize, at: f64, value: f64| {
+            let at = [2.0, 15.0 + at, 40.0];
+            let schedule = Schedule::new(Against::Since(event), &at, &[0.3, 1.0 + value, -0.4], interpolation);
+            Command::Schedule(Arc::new(schedule.unwrap()))
+        };
+        let control = move |at: f64, value: f64| Control {
+            bank_angle: schedule(1, at, value),
+            angle_of_attack: schedule(0, 0.0, value),
+        };
+        let alpha = [-0.5, 0.0, 0.5, 1.1];
+        let lift = alpha.map(|alpha: f64| vec![0.6 * alpha.sin(); 2]);
+        let drag = alpha.map(|alpha: f64| vec![0.9 + alpha * alpha; 2]);
+        let table = AlphaMachTable::new(&alpha, &[1.0, 10.0], &lift, &drag).unwrap();
+        let case = Case {
+            atmosphere: Atmosphere::Us76,
+            vehicle: Vehicle { aerodynamics: Aerodynamics::AlphaMachTable(Arc::new(table)), ..eventful().vehicle },
+            control: control(0.0, 0.0),
+            events: vec![
+                at_altitude(80e3, Effect::default()),
+                Event { when: Trigger::After { event: 0, delay: 3.0 }, then: Effect::default() },
+            ],
+            ..eventful()
+        };
+        let numbers = [
+            number("the altitude of the event", 1e4, |case, offset| *trigger(case, 0) += offset),
+            number("the delay of the event", 1.0, |case, offset| *trigger(case, 1) += offset),
+            number("entry of time", 1.0, move |case, offset| case.control = control(offset, 0.0)),
+            number("angle", 1.0, move |case, offset| case.control = control(0.0, offset)),
+            number("speed", 1e3, set_state(3)),
+            number("mass", 700.0, |case, offset| case.vehicle.mass += offset),
+        ];
+        agree_with_differences(&format!("{interpolation:?} since an event"), &case, &numbers);
+        agree_with_differences(&format!("{interpolation:?} since an event, spherical"), &spherical(case), &numbers);
+    }
+}
+
+/// A peak that lies just beside the end of a step, where no look at the step is nearer than that end, is found all the same.
+#[test]
+fn a_peak_beside_the_end_of_a_step_is_found() {
+    let plain = Case { stop: Stop { time: 400.0, ..Stop::default() }, ..with_tolerance(capsule(), 1e-13) };
+    let [of_load] =
+        [outputs().into_iter().find(|(name, at, _)| (*name, *at) == ("load factor", Moment::Peak)).unwrap()];
+    let peak = fly(&plain).peaks().load_factor;
+    // A mark ends a step; the steps here are seconds long.
+    for beside in [-0.2, -0.02, -1e-3, 1e-3, 0.02, 0.2] {
+        let (quantity, direction) = (Quantity::Time, Direction::Rising);
+        let when = Condition { quantity, value: peak.time + beside, direction }.into();
+        let flight = fly(&Case { events: vec![Event { when, then: Effect::default() }], ..plain.clone() });
+        let value = move |point: &FlightPoint, _: Option<Moved>| of_load.2(point);
+        let output = Output { at: Moment::Peak, value: &value, turn: None, takes_ground_distance: false };
+        let found = slopes(&flight, &[], &[output], &AtomicBool::new(false)).unwrap();
+        let off = found[0].time.unwrap() - peak.time;
+        // By differences over a part of a step the time of the peak is known to a part in 10^6 of the step, or so.
+        assert!(off.abs() < 1e-5, "{beside} s beside the peak: {off} s");
+    }
 }

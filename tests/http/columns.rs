@@ -187,6 +187,26 @@ async fn what_is_given_only_on_request_is_nowhere_else() {
 }
 
 /// A capsule after its deorbit burn lands more than half round the Earth from where it began to brake: 38 446.7 km, by an integration with
+/// The energy by its formula, from columns that the case has unasked: over a sphere with gravity of a point.
+#[tokio::test]
+async fn the_energy_is_that_of_the_rotating_planet() {
+    let planet = json!({"model": "custom", "gravitational_parameter": 3.986e14, "equatorial_radius": 6.378e6,
+        "polar_radius": 6.378e6, "rotation_rate": 7.3e-5});
+    let columns = ["speed", "radius", "geocentric_latitude", "energy"];
+    let output = json!({"interval": 10, "columns": columns});
+    let case = with_all(&capsule(), [("/planet", planet), ("/output", output)]);
+    let trajectory = fly(&case).await["trajectory"].clone();
+    let [speeds, radii, latitudes, energies] =
+        columns.map(|name| trajectory[name].as_array().unwrap().iter().map(number).collect::<Vec<_>>());
+    for row in 0..speeds.len() {
+        let rotation = 7.3e-5 * radii[row] * latitudes[row].cos();
+        let expected = speeds[row].powi(2) / 2.0 - 3.986e14 / radii[row] - rotation.powi(2) / 2.0;
+        check::near("energy", energies[row], expected, 1e-6);
+    }
+    assert!(energies.is_sorted_by(|before, after| before > &(after - 1e-3)), "{energies:?}");
+    assert!(!names(&fly(&capsule()).await["final_state"]).contains(&"energy"), "it is given on request");
+}
+
 /// DOP853 of `SciPy`.
 #[tokio::test]
 async fn downrange_goes_on_beyond_half_the_globe() {

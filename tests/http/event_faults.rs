@@ -455,6 +455,20 @@ async fn what_waits_for_an_event_waits_for_one_that_may_happen() {
     .await;
     let stop = with_all(&capsule(), [("/stop", json!({"when": [{"event": "main"}]}))]);
     steady.refused_at("/simulate", &stop, &[("/stop/when/0/event", unknown)]).await;
+    let since = |name: &str| json!({"type": "schedule", "against": {"since": name}, "at": [0, 10], "value": [0, 1]});
+    let all = with_all(
+        &stop,
+        [
+            ("/events", json!([named("drogue"), named("drogue")])),
+            ("/control", json!({"bank_angle": since("main"), "angle_of_attack": since("drogue")})),
+        ],
+    );
+    let expected = [
+        ("/stop/when/0/event", unknown),
+        ("/control/bank_angle/against/since", unknown),
+        ("/control/angle_of_attack/against/since", several),
+    ];
+    steady.refused_at("/simulate", &all, &expected).await;
 }
 
 #[tokio::test]

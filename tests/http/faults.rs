@@ -167,7 +167,7 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                     "must be one of inertial, got "
                 }
                 "/control/bank_angle/type" => "must be one of schedule, got ",
-                "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, got ",
+                "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, energy, got ",
                 "/control/bank_angle/interpolation" => "must be one of linear, step, got ",
                 "/solver/formulation" => "must be one of cartesian, spherical, got ",
                 "/state/frame" | "/initial_state/frame" => "must be one of date, teme, gcrf, got ",

@@ -246,11 +246,18 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
             "/control/bank_angle",
             &[
                 ("/type", Required, Name),
-                ("/against", Required, Name),
+                ("/against", Required, NameOrObject),
                 ("/at", Required, Numbers),
                 ("/value", Required, Numbers),
                 ("/interpolation", Optional, Name),
             ],
+        ),
+        "schedule against energy" => {
+            ("/control/bank_angle", &[("/against", Required, NameOrObject), ("/at", Required, Numbers)])
+        }
+        "schedule since an event" => (
+            "/control/bank_angle",
+            &[("/against", Required, NameOrObject), ("/against/since", Required, Text), ("/at", Required, Numbers)],
         ),
         "columns" => ("/output", &[("/columns", Optional, Names)]),
         "heating" => (
@@ -347,7 +354,7 @@ const FACTOR: [Row; 3] = [
 ];
 
 /// What a condition may wait for, and the values that it may pass.
-pub(crate) const QUANTITIES: [(&str, Kind); 21] = [
+pub(crate) const QUANTITIES: [(&str, Kind); 22] = [
     ("time", Number(TIME)),
     ("altitude", Number(DISTANCE)),
     ("speed", Number(SPEED)),
@@ -361,6 +368,7 @@ pub(crate) const QUANTITIES: [(&str, Kind); 21] = [
     ("specific_energy", Number(FINITE)),
     ("apoapsis_altitude", Number(DISTANCE)),
     ("periapsis_altitude", Number(DISTANCE)),
+    ("eccentricity", Number(NOT_NEGATIVE)),
     ("inclination", Angle(HALF)),
     ("heat_flux", Number(NOT_NEGATIVE)),
     ("heat_load", Number(NOT_NEGATIVE)),

@@ -29,6 +29,7 @@ mod metrics;
 mod models;
 mod nesc;
 mod numbers;
+mod oem;
 mod output;
 mod page;
 mod planets;

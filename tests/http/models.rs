@@ -204,11 +204,15 @@ async fn faults_of_columns_are_named() {
     let known = COLUMNS[..14].join(", ");
     for (output, pointer, phrase) in [
         (json!({"columns": ["time", "hight"]}), "/output/columns/1", known.as_str()),
-        (json!({"columns": ["time", "hight"]}), "/output/columns/1", "periapsis_altitude, thrust, got \"hight\""),
+        (
+            json!({"columns": ["time", "hight"]}),
+            "/output/columns/1",
+            "periapsis_altitude, thrust, energy, got \"hight\"",
+        ),
         (json!({"columns": ["time", 3]}), "/output/columns/1", "got a number"),
         (json!({"columns": ["time", "speed", "time"]}), "/output/columns/2", "time is given twice"),
         (json!({"columns": []}), "/output/columns", "must have at least 1 entry, got 0"),
-        (json!({"columns": vec!["time"; 45]}), "/output/columns", "must have at most 44 entries, got 45"),
+        (json!({"columns": vec!["time"; 46]}), "/output/columns", "must have at most 45 entries, got 46"),
         (json!({"columns": "time"}), "/output/columns", "must be an array of names, got a string"),
         (
             json!({"columns": ["time"], "trajectory": false}),
@@ -412,8 +416,27 @@ async fn a_ballistic_vehicle_has_no_area() {
 #[tokio::test]
 async fn faults_of_schedules_are_named() {
     let steady = Steady::new().await;
-    let schedule = |against: &str, at: Value, value: Value| json!({"type": "schedule", "against": against, "at": at, "value": value});
+    let along = |against: Value, at: Value, value: Value| json!({"type": "schedule", "against": against, "at": at, "value": value});
+    let schedule = |against: &str, at: Value, value: Value| along(json!(against), at, value);
     for (command, expected) in [
+        (
+            along(json!({"since": 3}), json!([1, 2]), json!([0, 0])),
+            vec![("/against/since", "must be a string, got a number")],
+        ),
+        (along(json!({}), json!([0]), json!([0])), vec![("/against/since", "is required")]),
+        (
+            along(json!({"since": "main", "event": "main"}), json!([0]), json!([0])),
+            vec![("/against/event", "is not a field here")],
+        ),
+        (along(json!({"since": "main"}), json!([-1]), json!([0])), vec![("/at/0", "must be at least 0, got -1")]),
+        (
+            along(json!({"since": "main"}), json!([0]), json!([0])),
+            vec![("/against/since", "must be the name of an event of the case, got \"main\"")],
+        ),
+        (
+            schedule("energy", json!([-1e7, -2e7]), json!([0, 0])),
+            vec![("/at/1", "must be greater than the previous entry, -1e7")],
+        ),
         (json!("flat"), vec![("", "must be a number or an object with a schedule, got a string")]),
         (json!([0]), vec![("", "must be a number or an object with a schedule, got an array")]),
         (json!({"at": [0], "value": [0]}), vec![("/type", "is required; it must be one of schedule")]),
@@ -427,7 +450,7 @@ async fn faults_of_schedules_are_named() {
         (
             schedule("height", json!([]), json!([])),
             vec![
-                ("/against", "must be one of time, altitude, speed, mach, got \"height\""),
+                ("/against", "must be one of time, altitude, speed, mach, energy, got \"height\""),
                 ("/at", "must have at least 1 entry, got 0"),
                 ("/value", "must have at least 1 entry, got 0"),
             ],

@@ -53,7 +53,7 @@ async fn a_request_that_cannot_be_read_gets_its_problem() {
         (
             post_json("/simulate?format=xml", &capsule()),
             json!({"type": "/problems/not-acceptable", "title": "Not acceptable", "status": 406,
-                "detail": "the response is available as json or csv or geojson or kml or czml, not as \"xml\""}),
+                "detail": "the response is available as json or csv or geojson or kml or czml or oem, not as \"xml\""}),
         ),
         (
             post_json("/simulate?formt=csv", &capsule()),

@@ -185,6 +185,20 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
                 [("/control/bank_angle", schedule("altitude")), ("/control/angle_of_attack", schedule("mach"))],
             ),
         ),
+        ("schedule against energy", with(&flight(), "/control/bank_angle", schedule("energy"))),
+        (
+            "schedule since an event",
+            with_all(
+                &flight(),
+                [
+                    ("/events", json!([named("first")])),
+                    (
+                        "/control/bank_angle",
+                        json!({"type": "schedule", "against": {"since": "first"}, "at": [0.1, 0.4], "value": [0.1, -0.2]}),
+                    ),
+                ],
+            ),
+        ),
         ("columns", with(&flight(), "/output/columns", json!(["time", "altitude"]))),
         (
             "heating",

@@ -34,12 +34,13 @@ def connection(service, text):
         post("/simulate?format=geojson", DATED),
         post("/simulate?format=kml", DATED),
         post("/simulate?format=czml", ROWS),
+        post("/simulate?format=oem", DATED),
         post("/simulate", ROWS, **{"accept-encoding": "gzip"}),
         post("/simulate", {**ORBIT, "sensitivities": True}),
         post("/simulate", {**ORBIT, "verify": True}),
         post("/simulate/batch", [ROWS] * 3),
     ],
-    ids=["flight", "rows", "csv", "geojson", "kml", "czml", "gzip", "sensitivities", "verify", "batch"],
+    ids=["flight", "rows", "csv", "geojson", "kml", "czml", "oem", "gzip", "sensitivities", "verify", "batch"],
 )
 def test_a_client_that_goes_away_takes_its_work_along(start, text):
     service = start("--workers", "1")

@@ -60,8 +60,8 @@ pub fn parser(text: &[u8]) {
 
 /// A request for a flight: the answer is good, or names what is wrong with the request. True where it is answered.
 ///
-/// A letter before it asks for another format: `c`, `g`, `k` and `z` for CSV, `GeoJSON`, KML and CZML; `a` asks `/analytic`, and `b` for CSV
-/// there.
+/// A letter before it asks for another format: `c`, `g`, `k`, `z` and `o` for CSV, `GeoJSON`, KML, CZML and OEM; `a` asks `/analytic`, and `b`
+/// for CSV there.
 ///
 /// # Panics
 /// When the answer is neither.
@@ -71,6 +71,7 @@ pub fn simulate(input: &[u8]) -> bool {
         [b'g', text @ ..] => (Endpoint::Simulate, Format::Geojson, text),
         [b'k', text @ ..] => (Endpoint::Simulate, Format::Kml, text),
         [b'z', text @ ..] => (Endpoint::Simulate, Format::Czml, text),
+        [b'o', text @ ..] => (Endpoint::Simulate, Format::Oem, text),
         [b'a', text @ ..] => (Endpoint::Analytic, Format::Json, text),
         [b'b', text @ ..] => (Endpoint::Analytic, Format::Csv, text),
         text => (Endpoint::Simulate, Format::Json, text),
@@ -99,7 +100,7 @@ pub fn simulate(input: &[u8]) -> bool {
         }
         Format::Csv => is_table(&bytes, &tree),
         Format::Geojson | Format::Czml => drop(strict(&bytes, &tree)),
-        Format::Kml | Format::Ndjson | Format::Text => drop(good(String::from_utf8(bytes), &tree)),
+        Format::Kml | Format::Oem | Format::Ndjson | Format::Text => drop(good(String::from_utf8(bytes), &tree)),
     }
     true
 }

@@ -228,7 +228,7 @@ pub fn corpus(target: &str) -> Vec<Vec<u8>> {
 }
 
 /// The letters that may stand before a request for a flight.
-pub const LETTERS: &[u8] = b"cgkzab";
+pub const LETTERS: &[u8] = b"cgkzoab";
 
 /// The letter before a request, if there is one, and the request.
 fn split(input: &[u8]) -> (Option<u8>, &[u8]) {

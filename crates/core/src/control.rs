@@ -35,7 +35,8 @@ pub enum Against {
     Speed,
     /// The speed relative to the air over that of sound.
     Mach,
-    /// That relative to the planet, of [`Planet::energy`](crate::Planet::energy), J/kg: in still air it never grows but by thrust.
+    /// Relative to the planet, of the velocity and the potentials of gravity and of the centrifugal force, J/kg: in still air it never grows
+    /// but by thrust.
     Energy,
     /// Since the event of this place in the list happened, s; until then the value of the first entry holds.
     Since(usize),

@@ -54,6 +54,7 @@ const DRAG_TIMES_A_STEP: f64 = 1.5;
 /// The forces on the vehicle: gravity, lift, drag, thrust and parachutes. The parameters may carry derivatives (dual numbers), or be those
 /// of several vehicles in the lanes of one computation.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is asked for by its name")]
 pub struct Forces<P = f64> {
     /// The models, in which the numbers of `parameters` are replaced by 0 or 1: both must come from the same case.
     models: Models,
@@ -196,6 +197,7 @@ struct Flow<S: nalgebra::Scalar> {
 }
 
 /// What depends on more of a place than its altitude, where something asks for it.
+#[derive(Clone, Copy)]
 struct Local<S> {
     /// Density, kg/m³, and speed of sound, m/s, of an atmosphere that depends on more than the altitude.
     air: Option<(S, S)>,

@@ -3,7 +3,7 @@
 use std::io::{self, ErrorKind, Write};
 use std::iter;
 use std::rc::Rc;
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use reentry::Interrupt;
 use reentry::integrate::Statistics;
@@ -22,6 +22,8 @@ use crate::wire::bodies::{FlownBodies, FlownBody};
 use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::dispersions::{Covariance, Dispersion};
+use crate::wire::ephemeris::{Ephemeris, MessageFrame, write_oem};
+use crate::wire::epoch::{Epoch, Utc};
 use crate::wire::events::Event;
 use crate::wire::numbers::Varied;
 use crate::wire::outputs::{AvailableWhereMoved, OutputNumber};
@@ -49,8 +51,10 @@ pub struct Answer {
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let mut request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
     let echo = request.echo.take();
-    if let Some(fault) = globe_fault(&request.request.planet, format) {
-        return Err(ApiError::Invalid(vec![fault]));
+    let (planet, epoch) = (request.request.planet, request.request.epoch);
+    let faults = faults_of_format(format, &planet, epoch);
+    if !faults.is_empty() {
+        return Err(ApiError::Invalid(faults));
     }
     let FlightRequest { scenario, request: asked, .. } = &request;
     let start = Instant::now();
@@ -69,13 +73,18 @@ pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
     let work = work(flights.all(), &rows);
     let analyses = RequestedAnalyses { echo, ..analyses(&request, &flights.vehicle, &mut held)? };
     let response = SimulateResponse::new(asked, &flown, rows, analyses, elapsed);
-    let track = || Track::new(&response, &flights, asked.epoch).map_err(|fault| ApiError::Invalid(vec![fault]));
+    let track = || Track::new(&response, &flights, epoch).map_err(|fault| ApiError::Invalid(vec![fault]));
+    let ephemerides = || {
+        let frame = MessageFrame::of(&planet, epoch).map_err(ApiError::Invalid)?;
+        Ephemeris::all(&response, &flights, frame).map_err(|fault| ApiError::Invalid(vec![fault]))
+    };
     let mut out = Written::new(held);
     let written = match format {
         Format::Csv => response.write_csv(&mut out),
         Format::Geojson => track()?.write_geojson(&mut out),
         Format::Kml => track()?.write_kml(&mut out),
         Format::Czml => track()?.write_czml(&mut out),
+        Format::Oem => write_oem(&ephemerides()?, Utc::of_clock(SystemTime::now()), &mut out),
         Format::Json | Format::Ndjson | Format::Text => serde_json::to_writer(&mut out, &response),
     };
     Ok(Answer { body: out.whole(written)?, work })
@@ -97,16 +106,17 @@ fn requested_output(format: Format) -> RequestedOutput {
     match format {
         Format::Json | Format::Ndjson | Format::Text => RequestedOutput::Answer,
         Format::Csv => RequestedOutput::Rows,
-        Format::Geojson | Format::Kml | Format::Czml => RequestedOutput::Map,
+        Format::Geojson | Format::Kml | Format::Czml | Format::Oem => RequestedOutput::Map,
     }
 }
 
-/// Why viewers of the format would place flights on the planet on another globe; none where they do not.
-fn globe_fault(planet: &Planet, format: Format) -> Option<Fault> {
+/// Why the format cannot hold flights on the planet from the epoch on, or its viewers would place them on another globe.
+fn faults_of_format(format: Format, planet: &Planet, epoch: Option<Epoch>) -> Vec<Fault> {
     match format {
-        Format::Kml => Track::kml_fault(planet),
-        Format::Czml => Track::czml_fault(planet),
-        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson | Format::Text => None,
+        Format::Kml => Track::kml_fault(planet).into_iter().collect(),
+        Format::Czml => Track::czml_fault(planet).into_iter().collect(),
+        Format::Oem => MessageFrame::of(planet, epoch).err().unwrap_or_default(),
+        Format::Json | Format::Ndjson | Format::Csv | Format::Geojson | Format::Text => Vec::new(),
     }
 }
 

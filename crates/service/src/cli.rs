@@ -113,6 +113,7 @@ const SIMULATE_EXAMPLES: &str = r#"Examples:
   reentry simulate case.json
   reentry simulate case.json --format csv --output trajectory.csv
   reentry simulate case.json --format kml --output track.kml
+  reentry simulate case.json --format oem --output states.oem
   reentry simulate - < case.json | jq .final_state
   reentry simulate cases.json > answers.ndjson
   reentry simulate - --format csv <<'END'
@@ -124,7 +125,7 @@ const SIMULATE_EXAMPLES: &str = r#"Examples:
 
 A list of cases, a JSON array, gives one line of JSON per case, in order. A failed case is reported on standard error and its line
 holds the problem document; the others still run. With --format csv, a list gives one table whose first column, case, counts from 0.
-With geojson and czml, it gives one map per line. kml accepts only a single case.
+With geojson and czml, it gives one map per line. kml and oem accept only a single case.
 
 "#;
 

@@ -21,6 +21,8 @@ pub enum Format {
     Kml,
     /// Track for Cesium, application/czml+json
     Czml,
+    /// States for orbit software, text/vnd.ccsds.oem
+    Oem,
     /// A line of JSON for each case of a batch, application/x-ndjson
     #[value(skip)]
     Ndjson,
@@ -31,7 +33,7 @@ pub enum Format {
 
 impl Format {
     /// Those of a flight.
-    pub const OF_FLIGHTS: [Self; 5] = [Self::Json, Self::Csv, Self::Geojson, Self::Kml, Self::Czml];
+    pub const OF_FLIGHTS: [Self; 6] = [Self::Json, Self::Csv, Self::Geojson, Self::Kml, Self::Czml, Self::Oem];
     /// Those of a theory beside a flight.
     pub const OF_THEORIES: [Self; 2] = [Self::Json, Self::Csv];
 
@@ -43,6 +45,7 @@ impl Format {
             Self::Geojson => "geojson",
             Self::Kml => "kml",
             Self::Czml => "czml",
+            Self::Oem => "oem",
             Self::Ndjson => "ndjson",
             Self::Text => "text",
         }
@@ -62,6 +65,7 @@ impl Format {
             Self::Geojson => "application/geo+json",
             Self::Kml => "application/vnd.google-earth.kml+xml",
             Self::Czml => "application/czml+json",
+            Self::Oem => OEM,
             Self::Ndjson => "application/x-ndjson",
             Self::Text => "text/plain; charset=utf-8",
         }
@@ -98,6 +102,10 @@ impl Format {
         }
     }
 }
+
+/// CCSDS has registered no media type for the notation of keywords and values. It is lines of ASCII for people and programs, hence `text`,
+/// in the name of those whose standard it is.
+const OEM: &str = "text/vnd.ccsds.oem; charset=us-ascii";
 
 /// Whether a client asks for HTML by name, and for JSON less: as browsers do, and tools do not.
 pub fn prefers_html(headers: &HeaderMap) -> bool {

@@ -100,7 +100,7 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
     }
     if let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) {
         for (path, method, formats) in [
-            ("/simulate", "post", json!(["json", "csv", "geojson", "kml", "czml"])),
+            ("/simulate", "post", json!(["json", "csv", "geojson", "kml", "czml", "oem"])),
             ("/analytic", "post", json!(["json", "csv"])),
             ("/simulate/batch", "post", json!(["ndjson"])),
             ("/convert", "post", json!(["json"])),
@@ -249,6 +249,12 @@ fn add_examples(paths: &mut Map<String, Value>) {
             "value": parsed(include_str!("../../../openapi/examples/mars.json"))},
         "titan": {"summary": "Titan: ballistic entry of a probe, steep and slow",
             "value": parsed(include_str!("../../../openapi/examples/titan.json"))},
+        "launcher": {"summary": "Launcher: two stages to orbit, the spent stage and the fairing to their drop zones",
+            "value": parsed(include_str!("../../../openapi/examples/launcher.json"))},
+        "sounding_rocket": {"summary": "Sounding rocket: solid motor, separation, payload under a parachute",
+            "value": parsed(include_str!("../../../openapi/examples/sounding_rocket.json"))},
+        "abort": {"summary": "Abort during ascent: escape tower, capsule under parachutes",
+            "value": parsed(include_str!("../../../openapi/examples/abort.json"))},
         "target_1": {"summary": "TARGET reference case 1 of the thesis: steep and fast, from orbital elements",
             "value": parsed(include_str!("../../../openapi/examples/target_1.json"))},
         "target_2": {"summary": "TARGET reference case 2 of the thesis: banked, lifting vehicle",

@@ -31,6 +31,7 @@ pub mod bodies;
 pub mod columns;
 pub mod convert;
 pub mod dispersions;
+pub mod ephemeris;
 pub mod numbers;
 pub mod outputs;
 pub mod scenario;

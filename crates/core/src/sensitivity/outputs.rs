@@ -313,10 +313,16 @@ fn extremum(
         let part = |look: usize| look as f64 / (LOOKS - 1) as f64;
         let looks: [Option<f64>; LOOKS] = std::array::from_fn(|look| at(part(look)));
         offer(looks[0], Place::StepStart(index));
-        for look in 1..LOOKS - 1 {
-            let [before, here, after] = [looks[look - 1], looks[look], looks[look + 1]];
-            if here.is_some() && here >= before && here >= after {
-                let part = turn(&at, [part(look - 1), part(look + 1)]).unwrap_or(part(look));
+        for look in 0..LOOKS {
+            let [first, last] = [look.saturating_sub(1), (look + 1).min(LOOKS - 1)];
+            let here = looks[look];
+            if here.is_none() || here < looks[first] || here < looks[last] {
+                continue;
+            }
+            // What is greatest at an end of the step may turn just beside it.
+            let is_end = look == 0 || look == LOOKS - 1;
+            let turn = turn(&at, [part(first), part(last)]);
+            if let Some(part) = turn.or((!is_end).then_some(part(look))) {
                 offer(at(part), Place::Inside { step: index, time: step.time(part) });
             }
         }
@@ -332,10 +338,16 @@ fn extremum(
 fn turn(at: &impl Fn(f64) -> Option<f64>, [low, high]: [f64; 2]) -> Option<f64> {
     let value = |part: f64| at(part).unwrap_or(f64::NAN);
     let slope = |part: f64| {
-        let difference = |times: f64| value(part + times * NEIGHBOUR) - value(part - times * NEIGHBOUR);
-        8.0 * difference(1.0) - difference(2.0)
+        let at = |times: f64| value(part + times * NEIGHBOUR);
+        // By an end of the step, of second order to the side on which the step is.
+        if part < 2.0 * NEIGHBOUR {
+            6.0 * (4.0 * at(1.0) - 3.0 * at(0.0) - at(2.0))
+        } else if part > 1.0 - 2.0 * NEIGHBOUR {
+            6.0 * (3.0 * at(0.0) - 4.0 * at(-1.0) + at(-2.0))
+        } else {
+            8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))
+        }
     };
-    let ends = [low.max(2.0 * NEIGHBOUR), high.min(1.0 - 2.0 * NEIGHBOUR)];
-    let [first, last] = ends.map(|part| (part, slope(part)));
+    let [first, last] = [low, high].map(|part| (part, slope(part)));
     (first.1 > 0.0 && last.1 < 0.0).then(|| bracketed(slope, first, last, f64::EPSILON))
 }

@@ -104,11 +104,10 @@ impl<A: Answer> Run<A> {
             Ok(Some(cases)) if cases.is_empty() => {
                 Err(self.failed(&ApiError::Invalid(vec![Fault::new("", "must have at least 1 case, got none")])))
             }
-            Ok(Some(_)) if self.format == Format::Kml => {
-                let detail = "must be a single case for KML, not a list: an XML document does not fit on one line";
-                Err(self.failed(&ApiError::Invalid(vec![Fault::new("", detail)])))
-            }
-            Ok(Some(cases)) => self.many(&cases, output),
+            Ok(Some(cases)) => match not_of_lists(self.format) {
+                Some(fault) => Err(self.failed(&ApiError::Invalid(vec![fault]))),
+                None => self.many(&cases, output),
+            },
             Ok(None) => self.one(&text, output),
             Err(error) => Err(self.failed(&error.into())),
         }
@@ -178,6 +177,16 @@ impl<A: Answer> Run<A> {
         let told = told(&place, error, MOST_FAULTS_OF_A_CASE);
         FailedCase { told, line: with_line_end(error.problem().to_json()) }
     }
+}
+
+/// Why a list of cases cannot be answered in a format.
+fn not_of_lists(format: Format) -> Option<Fault> {
+    let detail = match format {
+        Format::Kml => "must be a single case for KML, not a list: an XML document does not fit on one line",
+        Format::Oem => "must be a single case for OEM, not a list: a message has the states of one object",
+        Format::Json | Format::Csv | Format::Geojson | Format::Czml | Format::Ndjson | Format::Text => return None,
+    };
+    Some(Fault::new("", detail))
 }
 
 /// Cases of a list that are told on standard error, one by one, when they fail.

@@ -20,6 +20,9 @@ use crate::wire::trajectory::SimulateResponse;
 /// and final states, the peaks and the trajectory. `text/csv` contains only the trajectory: a header with the column
 /// names, and one line per row.
 ///
+/// `text/vnd.ccsds.oem` is an Orbit Ephemeris Message of CCSDS 502.0-B: states in GCRF at the Earth, in MCI at Mars. It
+/// requires an epoch.
+///
 /// The other formats are maps, in degrees regardless of `angle_unit`. They contain the track, with one vertex and its
 /// time per row, and the end, the peaks and the events as points with their value, unit, time and altitude. Altitudes
 /// are above the planet's ellipsoid. `application/geo+json` is a feature collection: the track is cut at the
@@ -31,8 +34,8 @@ use crate::wire::trajectory::SimulateResponse;
     post,
     path = "/simulate",
     tag = "reentry",
-    params(("format" = Option<String>, Query, description = "`json`, `csv`, `geojson`, `kml` or `czml`; takes \
-                                                             precedence over `Accept`.")),
+    params(("format" = Option<String>, Query, description = "`json`, `csv`, `geojson`, `kml`, `czml` or \
+                                                             `oem`; takes precedence over `Accept`.")),
     request_body = SimulateRequest,
     responses(
         (status = 200, description = "Simulated flight.", content(
@@ -41,6 +44,7 @@ use crate::wire::trajectory::SimulateResponse;
             (Object = "application/geo+json"),
             (String = "application/vnd.google-earth.kml+xml"),
             (Vec<Object> = "application/czml+json"),
+            (String = "text/vnd.ccsds.oem"),
         )),
     ),
 )]

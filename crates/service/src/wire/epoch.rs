@@ -5,6 +5,7 @@ mod calendar;
 use std::cmp::Ordering;
 use std::fmt;
 use std::ops::Range;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use reentry::coordinates::earth_rotation_angle;
 use reentry::scenario::Bound;
@@ -161,6 +162,12 @@ impl Epoch {
         Some(Utc { date, second, microsecond: microseconds % 1_000_000 })
     }
 
+    /// By how much [`Self::utc`] rounds the time so many seconds later, s: what it gives is half a microsecond off at most.
+    pub fn rounding(self, seconds: f64) -> f64 {
+        let microseconds = (seconds - seconds.floor()) * 1e6 + f64::from(self.nanosecond) / 1e3;
+        (microseconds.round() - microseconds) * 1e-6
+    }
+
     /// The angle by which the Earth is turned from the equator and origin of date. UT1 is taken as UTC, from which it differs by less
     /// than 0.9 s.
     pub fn earth_rotation_angle(self) -> f64 {
@@ -228,12 +235,32 @@ fn day_and_second(elapsed: i64) -> (i64, i64) {
 }
 
 /// A time of day in UTC, to the microsecond.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Utc {
     date: Date,
     /// Of the day; 86 400 in a leap second.
     second: i64,
     microsecond: i64,
+}
+
+impl Utc {
+    /// The time by the clock of the system, which counts no leap seconds; clocks before 1970 or after 9999 are taken to be there.
+    pub fn of_clock(time: SystemTime) -> Self {
+        let since_1970 = time.duration_since(UNIX_EPOCH).unwrap_or_default();
+        let seconds = i64::try_from(since_1970.as_secs()).unwrap_or(i64::MAX);
+        let date = Date::after_2000(seconds / DAY + days_since_2000(1970, 1, 1)).unwrap_or(Date::LAST);
+        Self { date, second: seconds % DAY, microsecond: since_1970.subsec_micros().into() }
+    }
+
+    /// The year.
+    pub fn year(self) -> i64 {
+        self.date.year
+    }
+
+    /// The same, where what stands beside it says that it is in UTC.
+    pub fn without_zone(self) -> String {
+        self.to_string().trim_end_matches('Z').to_owned()
+    }
 }
 
 impl fmt::Display for Utc {

@@ -129,7 +129,7 @@ pub enum RequestedOutput {
     Answer,
     /// The trajectory alone.
     Rows,
-    /// The trajectory on a map.
+    /// The trajectory on a map, or as states; without columns.
     Map,
 }
 
@@ -155,11 +155,11 @@ impl FlightRequest {
         let mut request = description::read(&mut tree, simulate_request)?;
         let mut misplaced = request.beyond_rows(output);
         if output != RequestedOutput::Map {
-            // A map has no columns, and takes no notice of those that the same case has elsewhere.
+            // A map or a list of states has no columns, and takes no notice of those that the same case has elsewhere.
             misplaced.extend(request.impossible_columns());
         }
         if output != RequestedOutput::Answer && request.output.sampling.is_none() {
-            let detail = "must not be false: CSV and map formats contain only the trajectory";
+            let detail = "must not be false: CSV, OEM and map formats contain only the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
         }
         let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
@@ -205,8 +205,8 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
     let echo = object
         .field("echo", "Echo the case")
         .doc(
-            "Whether the response contains the request with all defaults filled in, as `case`. CSV and map formats \
-             omit it.",
+            "Whether the response contains the request with all defaults filled in, as `case`. CSV, OEM and map \
+             formats omit it.",
         )
         .default(false)
         .boolean();
@@ -296,7 +296,7 @@ fn analyses(object: &mut Object) -> (Option<RequestedSensitivities>, Option<Vec<
         .field("dispersions", "Dispersions")
         .doc(
             "Uncertain numbers of the case. The response then contains the linear `covariance` of the end of the \
-             flight. Not supported for CSV and map formats.",
+             flight. Not supported for CSV, OEM and map formats.",
         )
         .optional()
         .objects([0, MOST_VARIED], dispersion);
@@ -304,7 +304,7 @@ fn analyses(object: &mut Object) -> (Option<RequestedSensitivities>, Option<Vec<
         .field("verify", "Accuracy check")
         .doc(
             "Whether the response reports the numerical accuracy of the flight, as `verification`. It takes the \
-             computing time of about two flights. Not supported for CSV and map formats.",
+             computing time of about two flights. Not supported for CSV, OEM and map formats.",
         )
         .default(false)
         .boolean();
@@ -464,7 +464,7 @@ fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Outp
             "Columns of the trajectory, in this order. Without it, the trajectory has all columns of the case except \
              those of the osculating orbit, `energy` and, unless the vehicle has parts, `thrust`. `propellant.NAME` is \
              the propellant that is left in the part of the name. Not supported with `\"trajectory\": false` and for \
-             `/analytic`, whose columns are fixed; map formats ignore it.",
+             `/analytic`, whose columns are fixed; OEM and map formats ignore it.",
         )
         .optional()
         .names_or(&COLUMNS.each_ref().map(|column| column.name), PROPELLANT, parts);
@@ -558,7 +558,7 @@ impl SimulateRequest {
             ("/dispersions", !self.dispersions.is_empty(), "given"),
         ];
         let misplaced = asked.into_iter().filter(|(_, asked, _)| *asked && output != RequestedOutput::Answer);
-        let detail = |how| format!("must not be {how}: CSV and map formats do not support it");
+        let detail = |how| format!("must not be {how}: CSV, OEM and map formats do not support it");
         misplaced.map(|(pointer, _, how)| Fault::new(pointer, detail(how))).collect()
     }
 

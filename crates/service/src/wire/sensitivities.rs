@@ -47,7 +47,7 @@ pub(super) fn asked(object: &mut Object) -> Option<RequestedSensitivities> {
         .field("sensitivities", "Sensitivity of the landing point")
         .doc(
             "Derivatives of the flight in the response: `true`, or outputs (`of`) by numbers of the case (`to`). Not \
-             supported for CSV and map formats.",
+             supported for CSV, OEM and map formats.",
         )
         .default(false)
         .boolean_or(

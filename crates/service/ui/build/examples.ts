@@ -13,6 +13,12 @@ const OWN: Record<string, string> = {
   mars: 'Entry of the Mars Science Laboratory, 6 August 2012. Entry state: S. Dutta and R. D. Braun (2014). The bank angle is constant at 60°, as the flown one is not published in numbers; mass and coefficients are constant. The flight ends at 406 m/s, where the parachute opened after 254 s. The air is one Mars-GRAM column of another place and season. Altitudes are above the ellipsoid. Load factors are in g of the Earth.',
   titan:
     'Entry of Huygens, 14 January 2005. Interface at 1270 km at the given epoch (Kazeminejad et al., 2007); the drag coefficient, place and heading are assumed. The flight ends at 400 m/s, where the pilot parachute opened at 155 to 180 km, less than 3 minutes after the deceleration began. Load factors are in g of the Earth.',
+  launcher:
+    'Fictitious small launcher of two stages from Mahia. The load limit throttles the first stage at 5 g. The second stage follows a pitch program until the periapsis rises to 250 km; 50 kg of its propellant are left. First stage and fairing fly on to their impacts, without drag tables of their own: their coefficients are constant.',
+  sounding_rocket:
+    'Fictitious sounding rocket from Esrange: a solid motor with a thrust table and pressure loss at the nozzle, leaning by 4° at 400 m. The motor is separated 35 s after its burnout; the payload tumbles below 20 km and opens its parachute at 5.5 km. The flight ends at 330 m, the altitude of the range.',
+  abort:
+    'Fictitious capsule on a large launcher from Cape Canaveral: abort after 60 s. The launcher is left behind with its engines off, the escape tower burns for 6 s and is jettisoned 3 s later; the capsule descends under drogues and main parachutes.',
 };
 /** The cases of the thesis, with their titles. */
 const THESIS: Record<string, string> = {

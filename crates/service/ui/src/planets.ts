@@ -59,6 +59,13 @@ export function airOfEarth(atmosphere: Case['atmosphere']): string | null {
   }
 }
 
+/** Why a case has no Orbit Ephemeris Message, which the service then refuses; null where it has one. */
+export function whyNoOem(flight: Case): string | null {
+  const model = modelOf(flight);
+  if (!isEarth(model) && model !== 'mars') return `OEM: the standard names no frame of ${bodyIn(model)}.`;
+  return flight.epoch === undefined ? 'OEM: requires an epoch.' : null;
+}
+
 /** The formats of maps that place a flight on the globe of its planet; the service refuses the others. */
 export function hasGlobe(format: string, model: string): boolean {
   if (format === 'kml') return isEarth(model) || ['custom', 'mars', 'moon'].includes(model);

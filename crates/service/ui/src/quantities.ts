@@ -55,6 +55,7 @@ export const QUANTITIES: Record<Name, Quantity> = {
   inertial_speed: plain('Inertial speed', 'm/s'),
   inertial_flight_path_angle: angle('Inertial flight-path angle'),
   specific_energy: plain('Specific energy', 'MJ/kg', 1e-6),
+  energy: plain('Energy relative to the planet', 'MJ/kg', 1e-6),
   semi_major_axis: plain('Semi-major axis', 'km', 1e-3),
   eccentricity: plain('Eccentricity', ''),
   inclination: angle('Inclination'),

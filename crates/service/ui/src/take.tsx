@@ -3,11 +3,11 @@ import { type Case, download, ProblemError } from './api';
 import { set, tidied } from './case';
 import { copied } from './clipboard';
 import { toFragment } from './link';
-import { bodyIn, hasGlobe, modelOf } from './planets';
+import { bodyIn, hasGlobe, modelOf, whyNoOem } from './planets';
 import { asCurl, asJson, asPython, fileName } from './snippets';
 import { draft } from './store';
 
-const FORMATS = ['csv', 'json', 'geojson', 'kml', 'czml'] as const;
+const FORMATS = ['csv', 'json', 'geojson', 'kml', 'czml', 'oem'] as const;
 
 /** What a user takes along: the link, the case in three languages, the flight as a file. */
 export function Take() {
@@ -38,6 +38,8 @@ export function Take() {
   };
   const model = modelOf(draft.value);
   const without = FORMATS.filter((format) => !hasGlobe(format, model));
+  const noOem = whyNoOem(draft.value);
+  const isOffered = (format: (typeof FORMATS)[number]) => (format === 'oem' ? noOem === null : hasGlobe(format, model));
   return (
     <section class="take" aria-label="Export">
       <div class="buttons">
@@ -58,7 +60,7 @@ export function Take() {
       <div class="buttons">
         <span class="quiet">Download</span>
         {FORMATS.map((format) => (
-          <button key={format} type="button" disabled={!hasGlobe(format, model)} onClick={() => void save(format)}>
+          <button key={format} type="button" disabled={!isOffered(format)} onClick={() => void save(format)}>
             {nameOf(format)}
           </button>
         ))}
@@ -78,6 +80,7 @@ export function Take() {
       {without.length > 0 && (
         <p class="quiet">{`${without.map(nameOf).join(' and ')}: viewers have no globe of ${bodyIn(model)}. GeoJSON names the planet.`}</p>
       )}
+      {noOem !== null && <p class="quiet">{noOem}</p>}
       <output class="quiet" aria-live="polite">
         {said.value}
       </output>
@@ -87,7 +90,7 @@ export function Take() {
 
 const nameOf = (format: (typeof FORMATS)[number]) => (format === 'geojson' ? 'GeoJSON' : format.toUpperCase());
 
-/** The case for a format: a table and a map have no place for what is said about a flight, and a map chooses its own columns. */
+/** The case for a format: a table, a map and a list of states have no place for what is said about a flight, and the last two have no columns. */
 function bodyFor(format: (typeof FORMATS)[number]): Case {
   const tree = tidied(draft.value);
   if (format === 'json') return tree;

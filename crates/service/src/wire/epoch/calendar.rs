@@ -1,7 +1,7 @@
 //! The Gregorian calendar of the years 0000 to 9999, before its introduction too, as RFC 3339 has it.
 
 /// A day of the calendar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
 pub(super) struct Date {
     pub(super) year: i64,
     /// From 1 on.
@@ -17,6 +17,8 @@ const BEFORE_MONTH: [i64; 13] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 30
 const TO_2000: i64 = before_year(2000);
 
 impl Date {
+    pub(super) const LAST: Self = Self { year: 9999, month: 12, day: 31 };
+
     /// Days from 2000 January 1 to this one; none where the calendar has no such day.
     pub(super) fn since_2000(self) -> Option<i64> {
         let Self { year, month, day } = self;

@@ -27,6 +27,8 @@ export type Field =
   | { kind: 'command'; label: string }
   /** A direction: a word, or one in inertial space. */
   | { kind: 'along'; label: string; words: Record<string, string> }
+  /** What a schedule runs along: a word, or the time since an event. */
+  | { kind: 'variable'; label: string; words: Record<string, string> }
   /** Names in a line, apart by commas. */
   | { kind: 'names'; label: string; hint?: string }
   /** A correlation of the convective heat flux by its name, or with the constant of a gas. */
@@ -188,6 +190,8 @@ function referred(name: string, label: string, measured: { unit?: string; isAngl
       return { kind: 'command', label };
     case 'Along':
       return { kind: 'along', label, words: wordsOf('Axis') };
+    case 'ScheduleVariable':
+      return { kind: 'variable', label, words: wordsOf('Against') };
     case 'ConvectiveFlux':
       return { kind: 'convective', label };
     case 'ThrustCommand':
@@ -232,6 +236,9 @@ export const SUTTON_GRAVES = fieldsOf('SuttonGraves');
 
 /** The correlations of the convective heat flux in air. */
 export const CONVECTIVE = wordsOf('Convective');
+
+/** The time since an event. */
+export const SINCE = fieldsOf('SinceEvent');
 
 /** A thrust that is switched on. */
 export const THRUST = fieldsOf('Thrust');

@@ -9,7 +9,7 @@ import { chapterOf } from '../guide';
 import { bodyIn, isBody, modelOf } from '../planets';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
-import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
+import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SINCE, SUTTON_GRAVES, THRUST } from './fields';
 import { exchanged, forget, settled } from './held';
 import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
 import { settle } from './planet';
@@ -158,6 +158,8 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
       return <Command label={field.label} path={path} property={property} />;
     case 'along':
       return <Along label={field.label} words={field.words} path={path} property={property} />;
+    case 'variable':
+      return <Variable label={field.label} words={field.words} path={path} property={property} />;
     case 'names':
       return (
         <Line label={field.label} path={path} property={property}>
@@ -756,6 +758,29 @@ function Along({ label, words, path, property }: AlongProps) {
         </select>
       </Line>
       {isInertial && <Vector label="Inertial direction" unit="any length" path={[...path, 'direction']} />}
+    </div>
+  );
+}
+
+/** What a schedule runs along: a quantity, or the time since an event, by its name. */
+function Variable({ label, words, path, property }: AlongProps) {
+  const value = get(draft.value, path);
+  const isSince = typeof value === 'object' && value !== null;
+  const change = (next: string) => put(path, next === 'since' ? {} : next);
+  return (
+    <div class="group">
+      <Line label={label} path={path} property={property}>
+        <select {...select(path)} value={isSince ? 'since' : String(value ?? '')} onChange={(event) => change(event.currentTarget.value)}>
+          {value === undefined && <option value="">Choose …</option>}
+          {Object.entries(words).map(([word, meaning]) => (
+            <option key={word} value={word}>
+              {meaning}
+            </option>
+          ))}
+          <option value="since">Time since event, s</option>
+        </select>
+      </Line>
+      {isSince && <Members fields={SINCE} schema="SinceEvent" path={path} />}
     </div>
   );
 }

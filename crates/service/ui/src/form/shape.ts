@@ -1,5 +1,5 @@
 import { get, type Path, pointer } from '../case';
-import { type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SUTTON_GRAVES, THRUST } from './fields';
+import { type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SINCE, SUTTON_GRAVES, THRUST } from './fields';
 
 /** The bytes that a case may have: the service takes no longer body, unless its settings say so. */
 export const LONGEST = 1 << 20;
@@ -68,6 +68,8 @@ function faultsOf(value: unknown, field: Field, path: Path): string[] {
       return isSingle ? ofSingle(value, path) : ofObject(value, SUTTON_GRAVES, path);
     case 'thrust':
       return isSingle ? ofSingle(value, path) : ofObject(value, THRUST, path);
+    case 'variable':
+      return isSingle ? ofSingle(value, path) : ofObject(value, SINCE, path);
     case 'along':
       return isSingle ? ofSingle(value, path) : ofObject(value, INERTIAL, path);
     default:

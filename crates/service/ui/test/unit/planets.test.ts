@@ -1,7 +1,7 @@
 import schema from 'virtual:schema';
 import { expect, it } from 'vitest';
 import type { Case } from '../../src/api';
-import { airOfEarth, bodyIn, hasGlobe, isBody, isEarth, isSameGround, modelOf } from '../../src/planets';
+import { airOfEarth, bodyIn, hasGlobe, isBody, isEarth, isSameGround, modelOf, whyNoOem } from '../../src/planets';
 
 const MODELS = schema.PlanetModel?.enum ?? [];
 
@@ -36,6 +36,16 @@ it.each<[Case['atmosphere'], boolean]>([
   [{ type: 'vacuum' }, false],
 ])('the air of %j is that of the Earth: %s', (atmosphere, isOfEarth) => {
   expect(airOfEarth(atmosphere) !== null).toBe(isOfEarth);
+});
+
+it.each([
+  [{ epoch: '2026-11-22T12:00:00Z' }, null],
+  [{ epoch: '2026-11-22T12:00:00Z', planet: { model: 'mars' } }, null],
+  [{}, 'OEM: requires an epoch.'],
+  [{ epoch: '2026-11-22T12:00:00Z', planet: { model: 'moon' } }, 'OEM: the standard names no frame of the Moon.'],
+  [{ planet: { model: 'custom' } }, 'OEM: the standard names no frame of a custom planet.'],
+])('of %j there is no OEM because: %s', (flight, why) => {
+  expect(whyNoOem(flight as Case)).toBe(why);
 });
 
 it('a map is offered where viewers have a globe', () => {

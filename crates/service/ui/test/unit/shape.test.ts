@@ -26,7 +26,10 @@ const FULL = {
   wind: { type: 'table', altitude: [0, 1e4], east: [1, 2], north: [3, 4] },
   heating: { convective: { type: 'sutton_graves', constant: 1e-4 }, radiative: 'none' },
   initial_state: { type: 'eci', frame: 'date', position: [7e6, 0, 0], velocity: [0, 7e3, 0] },
-  control: { bank_angle: { type: 'schedule', against: 'time', at: [0], value: [0] }, angle_of_attack: 0 },
+  control: {
+    bank_angle: { type: 'schedule', against: 'energy', at: [0], value: [0] },
+    angle_of_attack: { type: 'schedule', against: { since: 'first' }, at: [0], value: [0] },
+  },
   vehicle: { mass: 1, aerodynamics: { type: 'alpha_mach_table', angle_of_attack: [0], mach: [1], drag_coefficient: [[1]] } },
   events: [
     {
