@@ -11,9 +11,9 @@ use reentry::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::atmosphere::{Atmosphere, atmosphere};
-use super::columns::{AvailableQuantities, COLUMNS, Column};
+use super::columns::{AskedColumn, AvailableQuantities, COLUMNS, PROPELLANT};
 use super::control::{ControlRequest, control};
-use super::description::{self, Object, Words, word};
+use super::description::{self, NameOr, Object, Words, word};
 use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
 use super::events::{Condition, Event, EventReferences, MOST_EVENTS, condition, event};
@@ -79,8 +79,35 @@ pub struct Output {
     /// The instants that are asked for, if any, with the pointer to the field that asks for them.
     pub sampling: Option<(Sampling, &'static str)>,
     /// The columns that are asked for; none where all that the case has are.
-    pub columns: Option<Vec<&'static Column>>,
+    pub columns: Option<Vec<AskedColumn>>,
+    /// What is asked of the bodies that leave the vehicle.
+    pub bodies: OutputOfBodies,
 }
+
+/// What the answer has of the bodies that leave the vehicle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OutputOfBodies {
+    /// What it has of the vehicle.
+    #[default]
+    Full,
+    /// The same without rows.
+    Ends,
+    /// Nothing: they are not flown.
+    None,
+}
+
+/// The words for what the answer has of bodies.
+const OUTPUTS_OF_BODIES: Words<OutputOfBodies> = Words {
+    name: "OutputOfBodies",
+    doc: "Output for the bodies that leave the vehicle.",
+    words: &[
+        word("full", OutputOfBodies::Full, "With trajectories")
+            .doc("Their flights, with the rows of their trajectories."),
+        word("ends", OutputOfBodies::Ends, "Without trajectories")
+            .doc("Their flights without trajectories. CSV omits them, maps have their points without a track."),
+        word("none", OutputOfBodies::None, "None").doc("They are not flown."),
+    ],
+};
 
 /// The words for the equations to integrate.
 pub const FORMULATIONS: Words<Equations> = Words {
@@ -217,11 +244,14 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .object(|object| initial_state(object, has_epoch));
     inertial_conditions(object, "initial_state");
     let stop = object.field("stop", "Stop").doc("Conditions that end the flight.").default(json!({})).object(stop);
+    let of_parts = vehicle.iter().flat_map(|(_, parts)| parts).map(|part| part.name.clone());
+    let parts: Vec<_> = of_parts.collect();
+    let separates = events.iter().flatten().any(|event| !event.then.separated.is_empty());
     let output = object
         .field("output", "Output rows")
         .doc("Rows and columns of the trajectory.")
         .default(json!({"samples_per_step": 4}))
-        .object(output);
+        .object(|object| output(object, &parts, separates));
     let solver = object
         .field("solver", "Solver")
         .doc("Formulation and tolerance of the numerical integration.")
@@ -381,15 +411,17 @@ pub(super) fn conditions(object: &mut Object) -> Option<Vec<Condition>> {
 /// The fields of which one says which rows there are.
 const WAYS: [&str; 5] = ["samples_per_step", "interval", "count", "times", "trajectory"];
 
-fn output(object: &mut Object) -> Option<Output> {
+/// Rows and columns, in a case whose vehicle has parts of these names, and of which bodies may leave.
+fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Output> {
     object.named(
         "Output",
         "Rows and columns of the trajectory. Exactly one of `samples_per_step`, `interval`, `count`, `times` and \
-         `trajectory` must be given; if only `columns` is given, `samples_per_step` is 4. The rows at the start and \
-         at the end are always included.",
+         `trajectory` must be given; if only `columns` or `bodies` is given, `samples_per_step` is 4. The rows at the \
+         start and at the end are always included. Of every body that leaves the vehicle there are the same rows and \
+         columns, as far as it has them.",
     );
     let has_columns = object.has("columns");
-    if has_columns && !WAYS.iter().any(|way| object.has(way)) {
+    if (has_columns || object.has("bodies")) && !WAYS.iter().any(|way| object.has(way)) {
         object.fill("samples_per_step", json!(4));
     }
     let per_step = object
@@ -426,34 +458,48 @@ fn output(object: &mut Object) -> Option<Output> {
                 other => Err(format!("must be false or absent, got {}", shown(other))),
             },
         );
-    let names = COLUMNS.each_ref().map(|column| column.name);
     let columns = object
         .field("columns", "Columns")
         .doc(
             "Columns of the trajectory, in this order. Without it, the trajectory has all columns of the case except \
-             those of the osculating orbit and `thrust`. Not supported with `\"trajectory\": false` and for \
+             those of the osculating orbit, `energy` and, unless the vehicle has parts, `thrust`. `propellant.NAME` is \
+             the propellant that is left in the part of the name. Not supported with `\"trajectory\": false` and for \
              `/analytic`, whose columns are fixed; OEM and map formats ignore it.",
         )
         .optional()
-        .names(&names);
+        .names_or(&COLUMNS.each_ref().map(|column| column.name), PROPELLANT, parts);
+    if separates {
+        object.fill("bodies", json!("full"));
+    }
+    let bodies = object
+        .field("bodies", "Bodies that leave")
+        .doc("Output for the bodies that leave the vehicle, and those that leave them; by default `full`.")
+        .optional()
+        .word(&OUTPUTS_OF_BODIES);
     let no_trajectory = object.has("trajectory");
     if has_columns && no_trajectory {
         object.fault_of("columns", "must not be given together with \"trajectory\": false");
     }
     object.condition(|| {
-        // Columns alone are of four rows a step.
-        let ways = WAYS.map(|way| json!({"required": [way]}));
-        json!({"if": {"anyOf": ways}, "then": {"oneOf": ways}, "else": {"required": ["columns"]}})
+        // Without a way there are four rows a step.
+        let required = |name| json!({"required": [name]});
+        let (ways, others) = (WAYS.map(required), ["columns", "bodies"].map(required));
+        json!({"if": {"anyOf": ways}, "then": {"oneOf": ways}, "else": {"anyOf": others}})
     });
     object.condition(|| json!({"dependentSchemas": {"trajectory": {"not": {"required": ["columns"]}}}}));
     object.one_given(&WAYS)?;
+    let asked = |column| match column {
+        NameOr::Name(index) => AskedColumn::Listed(&COLUMNS[index]),
+        NameOr::Other(part) => AskedColumn::Propellant(part),
+    };
     let per_step = per_step.map(|rows| (Sampling::PerStep(rows), "/output/samples_per_step"));
     let interval = interval.map(|interval| (Sampling::Interval(interval), "/output/interval"));
     let count = count.map(|count| (Sampling::Count(count), "/output/count"));
     let times = times.map(|times| (Sampling::Times(times), "/output/times"));
     Some(Output {
         sampling: per_step.or(interval).or(count).or(times),
-        columns: columns.map(|columns| columns.into_iter().map(|index| &COLUMNS[index]).collect()),
+        columns: columns.map(|columns| columns.into_iter().map(asked).collect()),
+        bodies: bodies.unwrap_or_default(),
     })
 }
 
@@ -521,6 +567,7 @@ impl SimulateRequest {
         let known = self.known();
         let columns = self.output.columns.iter().flatten().enumerate();
         let missing = columns.filter_map(|(index, column)| {
+            let AskedColumn::Listed(column) = column else { return None };
             let missing = column.missing(known)?;
             Some(Fault::new(format!("/output/columns/{index}"), format!("{} requires {missing}", column.name)))
         });
@@ -538,6 +585,7 @@ impl SimulateRequest {
             heating: self.heating.is_some(),
             changing_mass: !self.parts.is_empty() || self.events.iter().any(Event::changes_mass),
             thrust: !self.parts.is_empty() || self.events.iter().any(Event::changes_thrust),
+            parts: !self.parts.is_empty(),
             planet: self.planet.core,
             is_on_earth: self.planet.is_earth(),
             sidereal_angle: self.initial_state.sidereal_angle(self.epoch, self.angle_unit, &self.planet),
@@ -556,6 +604,7 @@ impl SimulateRequest {
         let vehicle = self.vehicle_flown();
         let mut across = vehicle.faults();
         across.extend(Event::frame_faults(&self.events, &self.control, is_angle_known));
+        across.extend(Separation::name_faults(&self.events, "", &mut HashSet::new()));
         if self.initial_state.is_held() {
             across.extend(Event::lift_off_faults(&self.events));
         }

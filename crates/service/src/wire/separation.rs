@@ -1,5 +1,7 @@
 //! What leaves the vehicle of a request, and how it flies on.
 
+use std::collections::HashSet;
+
 use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{Bound, Stop};
 use reentry::vehicle::{Aerodynamics, Vehicle};
@@ -55,7 +57,10 @@ pub(super) fn separation(object: &mut Object) -> Option<Separation> {
         "Body that leaves the vehicle: parts with the propellant that is left, their engines off. It flies on in the \
          planet, air and wind of the case, on the same clock; the vehicle keeps its velocity.",
     );
-    let name = object.field("name", "Name").doc("Name of the body in the response.").text();
+    let name = object
+        .field("name", "Name")
+        .doc("Name of the body in the response. It must be unique among all bodies of the case.")
+        .text();
     let parts = object.field("parts", "Parts").doc("Names of the parts that leave; at least one.").texts(MOST_PARTS);
     object.refine("parts", || json!({"minItems": 1}));
     if parts.as_ref().is_some_and(Vec::is_empty) {
@@ -121,6 +126,22 @@ fn stop(object: &mut Object) -> Option<BodyStop> {
 }
 
 impl Separation {
+    /// Names that several bodies have, of those that leave in events or leave others; `pointer` is that of what they leave.
+    pub(super) fn name_faults<'a>(events: &'a [Event], pointer: &str, names: &mut HashSet<&'a str>) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (index, event) in events.iter().enumerate() {
+            for (place, Self { name, events, .. }) in event.then.separated.iter().enumerate() {
+                let pointer = format!("{pointer}/events/{index}/then/separate/{place}");
+                if !names.insert(name) {
+                    let detail = format!("must be unique among the bodies of the case, got {} again", quoted(name));
+                    faults.push(Fault::new(format!("{pointer}/name"), detail));
+                }
+                faults.extend(Self::name_faults(events, &pointer, names));
+            }
+        }
+        faults
+    }
+
     /// Its parts among those of the vehicle.
     pub(super) fn parts_of(&self, parts: &[NamedPart]) -> Vec<NamedPart> {
         let part = |name: &String| NamedPart::place_of(name, parts).map(|place| parts[place].clone());
