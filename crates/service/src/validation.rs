@@ -92,6 +92,8 @@ pub enum Group {
     StandardAir,
     /// Coordinates and orbital elements.
     Frames,
+    /// Launches and separations, as closed forms have them.
+    Ascents,
     /// Entries at other planets, as another program flies them.
     Bodies,
     /// Flights that were flown.
