@@ -107,6 +107,10 @@ impl TheoryRequest {
             let detail = "must not be given: the columns of this response are fixed";
             misplaced.push(Fault::new("/output/columns", detail));
         }
+        if request.output.sites {
+            let detail = "must be false or absent: this response has no nearest site";
+            misplaced.push(Fault::new("/output/sites", detail));
+        }
         if request.heating.is_some() {
             misplaced.push(Fault::new("/heating", "must not be given: the theories do not include heating"));
         }
