@@ -24,6 +24,7 @@ mod convert;
 mod events;
 mod frames;
 mod heating;
+mod launch;
 mod licences;
 mod limits;
 mod metrics;

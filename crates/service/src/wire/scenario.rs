@@ -27,7 +27,7 @@ use super::sensitivities::{RequestedSensitivities, asked};
 use super::separation::Separation;
 use super::shown::shown;
 use super::state::{State, inertial_conditions, initial_state};
-use super::steering::Axes;
+use super::steering::{Axes, Steering};
 use super::vehicle::vehicle;
 use super::wind::{Wind, wind};
 use super::{ANGLE_UNITS, AngleUnit};
@@ -613,8 +613,13 @@ impl SimulateRequest {
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
         let is_angle_known = self.initial_state.gives_sidereal()
             || self.epoch.is_none_or(|epoch| self.planet.rotation_angle(epoch).is_some());
+        let too_many = Event::body_faults(&self.events);
+        if !too_many.is_empty() {
+            return Err(too_many);
+        }
         let vehicle = self.vehicle_flown();
-        let mut across = vehicle.faults(is_angle_known);
+        let mut across = vehicle.faults();
+        across.extend(Event::frame_faults(&self.events, &self.control, is_angle_known));
         across.extend(Separation::name_faults(&self.events, "", &mut HashSet::new()));
         if self.initial_state.is_held() {
             across.extend(Event::lift_off_faults(&self.events));
@@ -640,7 +645,11 @@ impl SimulateRequest {
             Err(error) => {
                 // A name of no event or part is among the faults, with the name.
                 let of_core = error.0.iter().filter(|fault| !is_of_name(fault));
-                Err(of_core.map(|it| self.fault_of_part(it).unwrap_or_else(|| fault(it))).chain(across).collect())
+                let mut faults: Vec<_> = of_core.map(|it| vehicle.located(it, &self.parts)).chain(across).collect();
+                // What is wrong with a part is wrong with every body that has it.
+                let mut known = HashSet::new();
+                faults.retain(|Fault { pointer, detail }| known.insert((pointer.clone(), detail.clone())));
+                Err(faults)
             }
         }
     }
@@ -649,6 +658,8 @@ impl SimulateRequest {
     fn vehicle_flown(&self) -> Flown<'_> {
         Flown {
             vehicle: Some(self.vehicle.clone()),
+            separation: None,
+            place: String::new(),
             parts: Cow::Borrowed(&self.parts),
             control: &self.control,
             events: &self.events,
@@ -666,7 +677,7 @@ impl SimulateRequest {
         for event in *events {
             core_events.push(event.to_core(events, &references, bodies.len()));
             for separation in &event.then.separated {
-                let body = flown.body(separation, "");
+                let body = flown.body(separation, String::new());
                 bodies.push(BodyCase { case: self.case_of(&body, frames), stop_time: body.stop_time });
             }
         }
@@ -695,13 +706,6 @@ impl SimulateRequest {
         }
     }
 
-    /// A fault of the exit area of a part, which the thrust at sea level may define.
-    fn fault_of_part(&self, fault: &scenario::Fault) -> Option<Fault> {
-        let scenario::Fault::NoPressure { field } = fault else { return None };
-        let index: usize = field.split('.').nth(2)?.parse().ok()?;
-        let pointer = self.parts.get(index)?.exit_area_pointer();
-        Some(Fault::new(format!("/vehicle/parts/{index}/{pointer}"), fault.to_string()))
-    }
 }
 
 /// Whether a fault is that of a name, of which the request has one with the name itself.
@@ -722,6 +726,10 @@ fn is_of_name(fault: &scenario::Fault) -> bool {
 struct Flown<'a> {
     /// None of a body whose aerodynamics are not known.
     vehicle: Option<Vehicle>,
+    /// That of a body.
+    separation: Option<&'a Separation>,
+    /// The pointer to it, if it is a body.
+    place: String,
     parts: Cow<'a, [NamedPart]>,
     control: &'a ControlRequest,
     events: &'a [Event],
@@ -732,17 +740,19 @@ struct Flown<'a> {
     stop_when: &'a [Condition],
 }
 
-impl Flown<'_> {
+impl<'a> Flown<'a> {
     /// Whether it is the vehicle itself.
     fn is_whole(&self) -> bool {
-        matches!(self.parts, Cow::Borrowed(_))
+        self.separation.is_none()
     }
 
     /// The body of a separation; `pointer` is that of the separation.
-    fn body<'b>(&self, separation: &'b Separation, pointer: &str) -> Flown<'b> {
+    fn body(&self, separation: &'a Separation, pointer: String) -> Self {
         let parts = separation.parts_of(&self.parts);
         Flown {
-            vehicle: separation.vehicle(&parts, pointer).ok(),
+            vehicle: separation.vehicle(&parts, &pointer).ok(),
+            separation: Some(separation),
+            place: pointer,
             parts: Cow::Owned(parts),
             control: &separation.control,
             events: &separation.events,
@@ -752,15 +762,61 @@ impl Flown<'_> {
         }
     }
 
+    /// A fault that the core found, at the field of the request that it concerns; `parts` are those of the request.
+    fn located(&self, of_core: &scenario::Fault, parts: &[NamedPart]) -> Fault {
+        let Fault { pointer, detail } = fault(of_core);
+        let names: Vec<_> = pointer.split('/').skip(1).collect();
+        let index = |at: usize| names.get(at).and_then(|index| index.parse::<usize>().ok());
+        let place = match (of_core, &names[..]) {
+            (scenario::Fault::OfBody { fault, .. }, _) => {
+                let separation = index(1).zip(index(4)).and_then(|(event, place)| {
+                    self.events.get(event).and_then(|event| event.then.separated.get(place))
+                });
+                let of_body = separation.map(|separation| {
+                    let place = format!("{}/{}", self.place, names[..5].join("/"));
+                    self.body(separation, place).located(fault, parts)
+                });
+                return of_body.unwrap_or(Fault { pointer, detail });
+            }
+            (scenario::Fault::NoPressure { .. }, _) => {
+                let exit_area = index(2).and_then(|index| parts.get(index)).map(NamedPart::exit_area_pointer);
+                exit_area.map(|exit_area| format!("/{}/{exit_area}", names[..3].join("/")))
+            }
+            (_, ["vehicle", rest @ ..]) => self.separation.map(|separation| self.of_body(separation, rest, parts)),
+            (_, ["control", "steering", angle, rest @ ..]) => {
+                let angle = self.control.steering.as_ref().map(|steering| angle_of(steering, angle));
+                angle.map(|angle| format!("/control/steering/{angle}/{}", rest.join("/")))
+            }
+            (_, ["events", event, "then", "steer", angle, rest @ ..]) => {
+                let steering = index(1).and_then(|event| self.events.get(event)?.then.steering.as_ref());
+                let angle = steering.map(|steering| angle_of(steering, angle));
+                angle.map(|angle| format!("/events/{event}/then/steer/{angle}/{}", rest.join("/")))
+            }
+            _ => None,
+        };
+        let is_of_part = place.as_ref().is_some_and(|place| place.starts_with("/vehicle/parts/"));
+        let of_flown = place.unwrap_or(pointer);
+        Fault::new(if is_of_part { of_flown } else { format!("{}{of_flown}", self.place) }, detail)
+    }
+
+    /// The pointer to a field of the vehicle that a body is: that of the separation, or that of its single part.
+    fn of_body(&self, separation: &Separation, field: &[&str], parts: &[NamedPart]) -> String {
+        let field = field.join("/");
+        let only = if let [only] = &self.parts[..] { NamedPart::place_of(&only.name, parts) } else { None };
+        match only.filter(|_| !separation.gives_aerodynamics()) {
+            Some(part) => format!("/vehicle/parts/{part}/{field}"),
+            None => format!("/{field}"),
+        }
+    }
+
     /// What is wrong across its fields, and across those of the bodies that leave it.
-    fn faults(&self, is_angle_known: bool) -> Vec<Fault> {
+    fn faults(&self) -> Vec<Fault> {
         let Self { events, control, parts, .. } = self;
         let mut faults = match &self.vehicle {
             Some(vehicle) => Event::area_faults(events, vehicle),
             None => Vec::new(),
         };
         faults.extend(Event::parachute_faults(events));
-        faults.extend(Event::frame_faults(events, is_angle_known));
         faults.extend(Event::part_faults(events, parts));
         if self.is_whole() {
             faults.extend(NamedPart::faults(parts, "/vehicle/parts"));
@@ -768,7 +824,7 @@ impl Flown<'_> {
         faults.extend(self.name_faults());
         if let Some(steering) = &control.steering {
             if parts.is_empty() {
-                let detail = "requires vehicle.parts: it points their engines";
+                let detail = "requires vehicle.parts: it points the engines of parts";
                 faults.push(Fault::new("/control/steering", detail));
             }
             let by_axis = steering.is_attitude() && control.angle_of_attack.is_given();
@@ -778,9 +834,10 @@ impl Flown<'_> {
         for (index, event) in events.iter().enumerate() {
             for (place, separation) in event.then.separated.iter().enumerate() {
                 let pointer = format!("/events/{index}/then/separate/{place}");
-                let missing = separation.vehicle(&separation.parts_of(parts), &pointer).err();
-                faults.extend(missing.into_iter().flatten());
-                let of_body = self.body(separation, &pointer).faults(is_angle_known);
+                // Whether names of no parts are all that is missing is not known.
+                let missing = separation.is_of(parts).then(|| separation.vehicle(&separation.parts_of(parts), &pointer));
+                faults.extend(missing.and_then(Result::err).into_iter().flatten());
+                let of_body = self.body(separation, pointer.clone()).faults();
                 faults.extend(
                     of_body
                         .into_iter()
@@ -803,6 +860,12 @@ impl Flown<'_> {
         });
         conditions.chain(self.control.name_faults(self.events)).chain(steers.flatten()).collect()
     }
+}
+
+/// The name of an angle of a steering, which the core calls `pitch` or `yaw`.
+fn angle_of(steering: &Steering, of_core: &str) -> &'static str {
+    let [pitch, yaw] = steering.angles();
+    if of_core == "pitch" { pitch } else { yaw }
 }
 
 /// From where and how a flight starts, for all that fly.

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use reentry::propulsion::Impulse;
+use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{Bound, Stop};
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
@@ -148,6 +148,29 @@ impl Separation {
         self.parts.iter().filter_map(part).collect()
     }
 
+    /// Whether each of its names is that of one part, and of another than the others.
+    pub(super) fn is_of(&self, parts: &[NamedPart]) -> bool {
+        let is_known = |name: &String| NamedPart::place_of(name, parts).is_some();
+        let is_new = |(index, name): (usize, &String)| !self.parts[..index].contains(name);
+        self.parts.iter().all(is_known) && self.parts.iter().enumerate().all(is_new)
+    }
+
+    /// Whether it gives aerodynamics.
+    pub(super) fn gives_aerodynamics(&self) -> bool {
+        self.aerodynamics.is_some()
+    }
+
+    /// Whether a push on it, an event of it or its steering has a direction that stays in inertial space.
+    pub(super) fn is_inertial(&self) -> bool {
+        let is_pushed = self.push.is_some_and(|push| matches!(push.along, ThrustAxis::Inertial(_)));
+        is_pushed || self.control.is_inertial() || self.events.iter().any(Event::is_inertial)
+    }
+
+    /// How many bodies it makes, with those that separate from it.
+    pub(super) fn count(&self) -> usize {
+        1 + Event::count_of_bodies(&self.events)
+    }
+
     /// The body, of these parts; `pointer` is that of the separation.
     ///
     /// # Errors
@@ -160,7 +183,10 @@ impl Separation {
         let of_part = only.and_then(|part| Some(f64::from(part.core.count) * part.reference_area?));
         let reference_area = self.reference_area.or(of_part).or(is_ballistic.then_some(1.0));
         let missing = |field: &str| {
-            let detail = "is required: the body has not a single part that defines it";
+            let detail = match only {
+                Some(part) => format!("is required: part {} has none", quoted(&part.name)),
+                None => "is required for a body of several parts".to_owned(),
+            };
             Fault::new(format!("{pointer}/{field}"), detail)
         };
         let mass = parts.iter().map(|part| part.core.mass()).sum();
