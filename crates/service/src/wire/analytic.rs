@@ -75,7 +75,7 @@ fn conditions_of_theories() -> Value {
             "atmosphere": {"properties": {"type": {"const": "exponential"}, "surface_density": positive}},
             "density_factor": positive,
             "vehicle": {"properties": {"reference_area": positive, "aerodynamics": {"properties": constant}}},
-            "output": {"properties": {"trajectory": false, "columns": false}},
+            "output": {"properties": {"trajectory": false, "columns": false, "sites": {"const": false}}},
         },
         "if": {"properties": {"solution": {"const": "steep_ballistic"}}},
         "then": {"properties": aerodynamics(json!({"properties": lift(json!({"const": 0}))}))},
