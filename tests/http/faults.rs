@@ -38,7 +38,7 @@ async fn every_mistyped_field_is_named_with_what_was_expected_and_what_was_got()
                 _ => "got ",
             };
             let expected = match field.kind {
-                Kind::Number(_) | Kind::Angle(_) | Kind::Command(_) => "must be a number",
+                Kind::Number(_) | Kind::NumberOrNull(_) | Kind::Angle(_) | Kind::Command(_) => "must be a number",
                 Kind::NumberOrNumbers(_) => "must be a number or an array of numbers",
                 Kind::Thrust => "must be \"off\" or an object",
                 Kind::Whole => "must be a whole number",

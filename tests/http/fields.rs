@@ -45,6 +45,8 @@ pub(crate) enum Kind {
     NameOrObject,
     /// A number, or one for each entry of a table.
     NumberOrNumbers(Range),
+    /// A number, or null.
+    NumberOrNull(Range),
     /// A whole number.
     Whole,
     /// One of some names.
@@ -92,7 +94,7 @@ pub(crate) enum Limit {
 }
 
 use Kind::{
-    Angle, Boolean, BooleanOrObject, Command, False, Instant, Matrix, Name, NameOrObject, Names, Number,
+    Angle, Boolean, BooleanOrObject, Command, False, Instant, Matrix, Name, NameOrObject, Names, Number, NumberOrNull,
     NumberOrNumbers, Numbers, Object, Objects, SiderealTime, Text, TextOrObject, TextOrTexts, Texts, Thrust, Vector,
     Whole,
 };
@@ -122,6 +124,9 @@ const WIND_SPEED: Range = between(0.0, 1e4);
 const HEAT_CAPACITY_RATIO: Range = between(1.0, 2.0);
 const MOLAR_MASS: Range = between(1e-6, 1.0);
 const COEFFICIENT: Range = between(-0.1, 0.1);
+const THRUST_OF_ENGINE: Range = between(0.0, 1e12);
+const LOAD_LIMIT: Range = Range { low: Open(0.0), high: Closed(1e6) };
+const STOP_TIME: Range = Range { low: Open(0.0), high: Closed(1e9) };
 
 const fn between(low: f64, high: f64) -> Range {
     Range { low: Closed(low), high: Closed(high) }
@@ -169,7 +174,7 @@ const CASE: [Row; 29] = [
     ("/control/angle_of_attack", Optional, Command(TURN)),
     ("/stop", Optional, Object),
     ("/stop/altitude", Optional, Number(DISTANCE)),
-    ("/stop/time", Optional, Number(Range { low: Open(0.0), high: Closed(1e9) })),
+    ("/stop/time", Optional, Number(STOP_TIME)),
     ("/stop/ceiling", Optional, Number(DISTANCE)),
     ("/stop/when", Optional, Objects),
     ("/stop/when/0/quantity", Alternative, Name),
@@ -271,6 +276,30 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
         ),
         "events" => ("/events", &EVENT),
         "waiting event" => ("/events/1/when", &[("/event", Alternative, Text), ("/delay", Optional, Number(TIME))]),
+        "launch from a site" => ("/initial_state", &LAUNCH),
+        "launch from a place" => ("/initial_state", &LAUNCH_PLACE),
+        "parts" => ("/vehicle/parts", &PARTS),
+        "engine at sea level" => {
+            ("/vehicle/parts/2/engine/thrust", &[("/sea_level", Optional, Number(THRUST_OF_ENGINE))])
+        }
+        "vertical" => ("/control/steering", &[("", Optional, Object), ("/type", Required, Name)]),
+        "linear tangent" => {
+            ("/control/steering", &[("/a", Required, Number(FINITE)), ("/b", Required, Number(FINITE))])
+        }
+        "program by the launch" => (
+            "/control/steering",
+            &[("/frame", Required, Name), ("/pitch", Required, Command(TURN)), ("/yaw", Optional, Command(TURN))],
+        ),
+        "program by the horizon" => {
+            ("/control/steering", &[("/pitch", Required, Command(TURN)), ("/azimuth", Required, Command(TURN))])
+        }
+        "program by the stars" => (
+            "/control/steering",
+            &[("/right_ascension", Required, Command(TURN)), ("/declination", Required, Command(TURN))],
+        ),
+        "engines" => ("/events/1/then", &ENGINES),
+        "burnout" => ("/events/1/when", &[("/burnout", Alternative, Text), ("/delay", Optional, Number(TIME))]),
+        "separation" => ("/events/1/then/separate", &SEPARATION),
         "thrust off" => ("/events/0/then", &[("/thrust", Optional, Thrust)]),
         "thrust without mass flow" => ("/events/0/then/thrust", &THRUST),
         "parachute" => ("/events/0/then/deploy", &PARACHUTE),
@@ -317,6 +346,82 @@ const PARACHUTE: [Row; 5] = [
     ("/drag_area", Required, Number(DRAG_AREA)),
     ("/inflation_time", Required, Number(TIME)),
     ("/delay", Optional, Number(TIME)),
+];
+
+const LAUNCH: [Row; 6] = [
+    ("", Required, Object),
+    ("/type", Required, Name),
+    ("/site", Alternative, Text),
+    ("/azimuth", Optional, Angle(TURN)),
+    ("/hold_down", Optional, Boolean),
+    ("/sidereal_time", Optional, SiderealTime),
+];
+
+const LAUNCH_PLACE: [Row; 3] = [
+    ("/geodetic_latitude", Alternative, Angle(QUARTER)),
+    ("/longitude", Required, Angle(TURN)),
+    ("/geodetic_altitude", Optional, Number(DISTANCE)),
+];
+
+/// Of a part with a constant thrust, of one with a table, and of one that is carried.
+const PARTS: [Row; 19] = [
+    ("", Alternative, Objects),
+    ("/0/name", Required, Text),
+    ("/0/count", Optional, Whole),
+    ("/0/dry_mass", Required, Number(NOT_NEGATIVE)),
+    ("/0/propellant", Optional, Number(NOT_NEGATIVE)),
+    // Propellant needs it.
+    ("/0/engine", Alternative, Object),
+    ("/0/engine/thrust", Required, Object),
+    ("/0/engine/thrust/vacuum", Required, NumberOrNumbers(THRUST_OF_ENGINE)),
+    ("/0/engine/specific_impulse", Required, Number(SPECIFIC_IMPULSE)),
+    ("/0/engine/exit_area", Optional, Number(NOT_NEGATIVE)),
+    ("/1/engine/thrust/type", Alternative, Name),
+    ("/1/engine/thrust/time", Required, Numbers),
+    ("/1/reference_area", Optional, Number(NOT_NEGATIVE)),
+    ("/1/aerodynamics", Optional, Object),
+    ("/1/aerodynamics/type", Required, Name),
+    ("/1/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
+    ("/1/nose_radius", Optional, Number(POSITIVE)),
+    // Without propellant it has a mass.
+    ("/3/name", Required, Text),
+    ("/3/dry_mass", Required, Number(POSITIVE)),
+];
+
+/// What an event does to engines.
+const ENGINES: [Row; 9] = [
+    ("/ignite", Optional, Texts),
+    ("/shut_down", Optional, Texts),
+    ("/throttle", Optional, Object),
+    ("/load_limit", Optional, NumberOrNull(LOAD_LIMIT)),
+    ("/steer", Optional, Object),
+    ("/steer/type", Required, Name),
+    ("/tilt", Optional, Object),
+    ("/tilt/angle", Required, Angle(TURN)),
+    ("/tilt/azimuth", Optional, Angle(TURN)),
+];
+
+/// A body with everything that may be said of it.
+const SEPARATION: [Row; 19] = [
+    ("", Optional, Objects),
+    ("/0/name", Required, Text),
+    ("/0/parts", Required, Texts),
+    ("/0/push", Optional, Object),
+    ("/0/push/along", Required, NameOrObject),
+    ("/0/push/value", Required, Number(VELOCITY)),
+    ("/0/reference_area", Optional, Number(NOT_NEGATIVE)),
+    ("/0/aerodynamics", Optional, Object),
+    ("/0/aerodynamics/drag_coefficient", Required, Number(NOT_NEGATIVE)),
+    ("/0/events", Optional, Objects),
+    ("/0/events/0/then/reference_area", Optional, Number(NOT_NEGATIVE)),
+    ("/0/control", Optional, Object),
+    ("/0/control/bank_angle", Optional, Command(TURN)),
+    ("/0/stop", Optional, Object),
+    ("/0/stop/altitude", Optional, Number(DISTANCE)),
+    ("/0/stop/time", Optional, Number(STOP_TIME)),
+    ("/0/stop/ceiling", Optional, Number(DISTANCE)),
+    ("/0/stop/when", Optional, Objects),
+    ("/0/stop/when/0/quantity", Alternative, Name),
 ];
 
 const ASKED: [Row; 5] = [
@@ -536,8 +641,8 @@ pub(crate) fn fields() -> Vec<Field> {
 impl Kind {
     /// Values of types that the field does not hold.
     pub(crate) fn mistyped(self) -> Vec<Value> {
-        let mut wrong = vec![json!(null)];
-        let number = matches!(self, Number(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime);
+        let mut wrong = if matches!(self, NumberOrNull(_)) { vec![] } else { vec![json!(null)] };
+        let number = matches!(self, Number(_) | NumberOrNull(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime);
         if !number {
             wrong.push(json!(13));
         }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::requests::{conversion, flight};
 
 /// The whole list of problems: type, title, status.
-const PROBLEMS: [(&str, &str, u16); 27] = [
+const PROBLEMS: [(&str, &str, u16); 28] = [
     ("/problems/invalid-json", "Not JSON", 400),
     ("/problems/invalid-query", "Invalid query string", 400),
     ("/problems/unreadable-body", "Unreadable body", 400),
@@ -33,6 +33,7 @@ const PROBLEMS: [(&str, &str, u16); 27] = [
     ("/problems/chattering-schedule", "Chattering schedule", 422),
     ("/problems/no-direction", "Thrust without direction", 422),
     ("/problems/no-mass-left", "No mass left", 422),
+    ("/problems/unknown-shares", "Unknown shares of propellant", 422),
     ("/problems/overflow", "Loads out of range", 422),
     ("/problems/too-many-requests", "Too many requests", 429),
     ("/problems/head-too-large", "Request head too large", 431),

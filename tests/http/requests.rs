@@ -222,6 +222,33 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
                 json!([event("time", "rises_through", 0.5, &json!({"thrust": inertial_thrust()}))]),
             ),
         ),
+        ("launch from a site", launch(&json!({"site": "mahia", "azimuth": 1.7, "hold_down": true, "sidereal_time": 100}))),
+        (
+            "launch from a place",
+            launch(&json!({"geodetic_latitude": 0.5, "longitude": -0.7, "geodetic_altitude": 10, "sidereal_time": 100})),
+        ),
+        ("parts", staged(&[])),
+        ("engine at sea level", staged(&[("/vehicle/parts/2/engine/thrust/vacuum", json!(1e12))])),
+        ("vertical", staged(&[("/control/steering", json!({"type": "vertical"}))])),
+        ("linear tangent", staged(&[("/control/steering", json!({"type": "linear_tangent", "a": 2, "b": 0.01}))])),
+        (
+            "program by the launch",
+            staged(&[("/control/steering", json!({"type": "program", "frame": "launch", "pitch": 0.9, "yaw": 0.1}))]),
+        ),
+        (
+            "program by the horizon",
+            staged(&[("/control/steering", json!({"type": "program", "frame": "local", "pitch": 0.9, "azimuth": 1.1}))]),
+        ),
+        (
+            "program by the stars",
+            staged(&[(
+                "/control/steering",
+                json!({"type": "program", "frame": "inertial", "right_ascension": 0.9, "declination": 0.1}),
+            )]),
+        ),
+        ("engines", staged(&[("/events/1/then", engines_change())])),
+        ("burnout", staged(&[("/events/1/when", json!({"burnout": "booster", "delay": 0.1}))])),
+        ("separation", staged(&[("/events/1/then", json!({"separate": [leaves()]}))])),
         ("parachute", with(&flight(), "/events", json!([deploys()]))),
         (
             "release",
@@ -246,6 +273,68 @@ pub(crate) fn waiting(name: &str, delay: f64) -> Value {
 
 fn inertial_thrust() -> Value {
     json!({"along": {"frame": "inertial", "direction": [1, -2, 0.5]}, "value": 3000, "specific_impulse": 280})
+}
+
+/// A second of a launch without parts, which stands on its pad: at the site or the place, from which the sidereal time goes.
+fn launch(place: &Value) -> Value {
+    let state = with(place, "/type", "launch");
+    with_all(&flight("geodetic"), [("/atmosphere", json!({"type": "us76"})), ("/initial_state", state)])
+}
+
+/// A second of flight of a vehicle with parts, whose boosters are lit, with further changes.
+pub(crate) fn staged(changes: &[(&str, Value)]) -> Value {
+    let constant = || json!({"type": "constant", "lift_coefficient": 0, "drag_coefficient": 0.9});
+    let vehicle = json!({
+        "parts": [
+            {
+                "name": "core", "count": 1, "dry_mass": 100, "propellant": 500,
+                "engine": {"thrust": {"vacuum": 9000}, "specific_impulse": 300, "exit_area": 0.01},
+            },
+            {
+                "name": "booster", "count": 2, "dry_mass": 20, "propellant": 50,
+                "engine": {"thrust": {"type": "table", "time": [0, 0.3, 0.6], "vacuum": [0, 3000, 0]}, "specific_impulse": 250},
+                "reference_area": 0.1, "aerodynamics": constant(), "nose_radius": 0.2,
+            },
+            {
+                "name": "second", "dry_mass": 50, "propellant": 100,
+                "engine": {"thrust": {"vacuum": 5000, "sea_level": 4000}, "specific_impulse": 320},
+            },
+            {"name": "payload", "dry_mass": 30},
+        ],
+        "reference_area": 0.2,
+        "aerodynamics": {"type": "constant", "lift_coefficient": 0.2, "drag_coefficient": 0.2},
+        "nose_radius": 0.3,
+    });
+    let lit = json!({"ignite": ["booster"]});
+    let request = with_all(
+        &flight("geodetic"),
+        [
+            ("/atmosphere", json!({"type": "us76"})),
+            ("/vehicle", vehicle),
+            ("/control", json!({"bank_angle": 0.8})),
+            ("/events", json!([event("time", "rises_through", 0.1, &lit), event("time", "rises_through", 0.2, &json!({}))])),
+        ],
+    );
+    changes.iter().fold(request, |request, (pointer, value)| with(&request, pointer, value.clone()))
+}
+
+/// Everything that an event may do to engines.
+fn engines_change() -> Value {
+    json!({
+        "ignite": ["core"], "shut_down": ["booster"], "throttle": {"core": 0.6}, "load_limit": 4,
+        "steer": {"type": "velocity"}, "tilt": {"angle": 0.1, "azimuth": 1.2},
+    })
+}
+
+/// The boosters that leave, with everything that may be said of a body.
+fn leaves() -> Value {
+    json!({
+        "name": "boosters", "parts": ["booster"], "push": {"along": "radial", "value": -1.5}, "reference_area": 0.3,
+        "aerodynamics": {"type": "constant", "lift_coefficient": 0, "drag_coefficient": 0.7},
+        "events": [{"name": "opens", "when": condition("time", "rises_through", 0.5), "then": {"reference_area": 8}}],
+        "control": {"bank_angle": 0.1, "angle_of_attack": 0},
+        "stop": {"altitude": -100, "time": 1, "ceiling": 3e6, "when": [condition("speed", "falls_through", 10.0)]},
+    })
 }
 
 /// An event that deploys a parachute.

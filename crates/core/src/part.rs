@@ -1,5 +1,7 @@
 //! The parts of a vehicle: stages, boosters, fairings and payloads, with their propellant and their engines.
 
+use std::sync::Arc;
+
 use crate::propulsion::STANDARD_GRAVITY;
 use crate::scalar::Scalar;
 
@@ -39,7 +41,7 @@ pub enum ThrustProfile {
     /// The same until the propellant is spent, N.
     Constant(f64),
     /// By the time since ignition, along straight lines; it ends with its last entry.
-    Table(Vec<ThrustEntry>),
+    Table(Arc<[ThrustEntry]>),
 }
 
 /// An entry of a thrust profile.

@@ -277,7 +277,7 @@ pub enum Fault {
         field: String,
     },
     /// A part that is separated twice.
-    #[error("must be a part that no other event separates: event {event} does")]
+    #[error("must be a part that is separated once: event {event} separates it")]
     SeparatedTwice {
         /// Its place in the [`Case`].
         field: String,
@@ -330,13 +330,13 @@ pub enum Fault {
     )]
     SphericalParts,
     /// A mass or a thrust that the parts already say.
-    #[error("must be omitted: the vehicle has parts, whose masses and engines say it")]
+    #[error("must be omitted: the parts of the vehicle define its mass and its engines")]
     SaidByParts {
         /// Its place in the [`Case`].
         field: String,
     },
     /// More bodies than a flight may set free.
-    #[error("must not set free more than {MOST_BODIES} bodies in all")]
+    #[error("must separate at most {MOST_BODIES} bodies in all, with those that separate from bodies")]
     TooManyBodies {
         /// Its place in the [`Case`].
         field: String,
@@ -735,11 +735,10 @@ impl Case {
         }
         let [bank_angle, angle_of_attack] =
             self.control.commands().map(|command| command.against() == Some(Against::Mach));
-        let needs: [(Cow<'static, str>, bool); 4] = [
+        let needs: [(Cow<'static, str>, bool); 3] = [
             ("vehicle.aerodynamics.type".into(), self.vehicle.aerodynamics.is_by_mach()),
             ("control.bank_angle.against".into(), bank_angle),
             ("control.angle_of_attack.against".into(), angle_of_attack),
-            ("control.steering".into(), self.steering.is_by(Against::Mach)),
         ];
         let conditions = self
             .conditions()
@@ -748,9 +747,14 @@ impl Case {
             let by_mach = event.then.aerodynamics.as_ref().is_some_and(Aerodynamics::is_by_mach);
             (format!("events.{index}.then.aerodynamics.type").into(), by_mach)
         });
-        let steers = self.events.iter().enumerate().map(|(index, event)| {
-            let by_mach = event.then.steer.as_ref().is_some_and(|steering| steering.is_by(Against::Mach));
-            (format!("events.{index}.then.steer").into(), by_mach)
+        let steered = self.events.iter().enumerate();
+        let steered = steered.filter_map(|(index, event)| Some((format!("events.{index}.then.steer"), event.then.steer.as_ref()?)));
+        let steers = steered.chain([("control.steering".to_owned(), &self.steering)]).flat_map(|(place, steering)| {
+            let commands = ["pitch", "yaw"].into_iter().zip(steering.commands().into_iter().flatten());
+            let of = |(name, command): (&str, &Command)| {
+                (format!("{place}.{name}.against").into(), command.against() == Some(Against::Mach))
+            };
+            commands.map(of).collect::<Vec<_>>()
         });
         let needs = needs.into_iter().chain(conditions).chain(effects).chain(steers);
         needs.filter(|(_, needs)| *needs).map(|(field, _)| Fault::NoTemperature { field }).collect()

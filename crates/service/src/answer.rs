@@ -1,13 +1,14 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
 use std::io::{self, ErrorKind, Write};
+use std::iter;
 use std::rc::Rc;
 use std::time::{Instant, SystemTime};
 
 use reentry::Interrupt;
 use reentry::integrate::Statistics;
 use reentry::sensitivity::{self, Output, Slopes, Variation, slopes};
-use reentry::simulate::{SimulationError, simulate as fly};
+use reentry::simulate::{BodyError, Flights, SimulationError, simulate as fly, simulate_with_bodies};
 use reentry::trajectory::{FlightPoint, Trajectory};
 use reentry::verification::verify;
 use serde_json::Value;
@@ -17,6 +18,7 @@ use crate::error::ApiError;
 use crate::format::Format;
 use crate::metrics::Work;
 use crate::wire::analytic::{AnalyticResponse, TheoryRequest};
+use crate::wire::bodies::{FlownBodies, FlownBody};
 use crate::wire::columns::COLUMNS;
 use crate::wire::convert::ConvertResponse;
 use crate::wire::dispersions::{Covariance, Dispersion};
@@ -27,7 +29,7 @@ use crate::wire::numbers::Varied;
 use crate::wire::outputs::{AvailableWhereMoved, OutputNumber};
 use crate::wire::planet::Planet;
 use crate::wire::reader::Fault;
-use crate::wire::scenario::{FlightRequest, RequestedOutput};
+use crate::wire::scenario::{FlightRequest, OutputOfBodies, RequestedOutput, SimulateRequest};
 use crate::wire::sensitivities::{Matrix, Method, RequestedSensitivities, Sensitivities, SensitivitiesAnswer};
 use crate::wire::track::Track;
 use crate::wire::trajectory::{RequestedAnalyses, SimulateResponse};
@@ -47,45 +49,57 @@ pub struct Answer {
 /// # Errors
 /// When the case is not sound, asks for more than `row_limit` rows, or cannot be flown to its end.
 pub fn simulate(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
-    let request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
+    let mut request = FlightRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
+    let echo = request.echo.take();
     let (planet, epoch) = (request.request.planet, request.request.epoch);
     let faults = faults_of_format(format, &planet, epoch);
     if !faults.is_empty() {
         return Err(ApiError::Invalid(faults));
     }
+    let FlightRequest { scenario, request: asked, .. } = &request;
     let start = Instant::now();
-    let flight = fly(&request.scenario, interrupt)?;
+    let flights = if asked.output.bodies == OutputOfBodies::None {
+        Flights::of_vehicle(fly(scenario, interrupt)?)
+    } else {
+        simulate_with_bodies(scenario, interrupt)?
+    };
     let elapsed = start.elapsed().as_secs_f64();
-    if !flight.measure_ground_track(interrupt) {
+    if !flights.all().all(|flight| flight.measure_ground_track(interrupt)) {
         return Err(ApiError::Interrupted);
     }
-    let mut held = HeldMemory::new(&flight, interrupt);
-    let points = rows(&request, &flight, row_limit, &mut held)?;
-    let work = work(&flight, points.as_deref());
-    let analyses = analyses(&request, &flight, &mut held)?;
-    let response = SimulateResponse::new(request, &flight, points, analyses, elapsed);
-    let track = |rows| Track::new(&response, rows, &flight).map_err(|fault| ApiError::Invalid(vec![fault]));
-    let ephemeris = |rows| {
+    let flown = FlownBodies::new(asked, &flights);
+    let mut held = HeldMemory::new(flights.all(), interrupt);
+    let rows = rows(asked, flown.all(), row_limit, &mut held)?;
+    let work = work(flights.all(), &rows);
+    let analyses = RequestedAnalyses { echo, ..analyses(&request, &flights.vehicle, &mut held)? };
+    let response = SimulateResponse::new(asked, &flown, rows, analyses, elapsed);
+    let track = || Track::new(&response, &flights, epoch).map_err(|fault| ApiError::Invalid(vec![fault]));
+    let ephemerides = || {
         let frame = MessageFrame::of(&planet, epoch).map_err(ApiError::Invalid)?;
-        Ephemeris::new(&response, rows, &flight, frame).map_err(|fault| ApiError::Invalid(vec![fault]))
+        Ephemeris::all(&response, &flights, frame).map_err(|fault| ApiError::Invalid(vec![fault]))
     };
     let mut out = Written::new(held);
-    let written = match (format, &response.trajectory) {
-        (Format::Csv, Some(rows)) => rows.write_csv(&mut out),
-        (Format::Geojson, Some(rows)) => track(rows)?.write_geojson(&mut out),
-        (Format::Kml, Some(rows)) => track(rows)?.write_kml(&mut out),
-        (Format::Czml, Some(rows)) => track(rows)?.write_czml(&mut out),
-        (Format::Oem, Some(rows)) => write_oem(&[ephemeris(rows)?], Utc::of_clock(SystemTime::now()), &mut out),
-        _ => serde_json::to_writer(&mut out, &response),
+    let written = match format {
+        Format::Csv => response.write_csv(&mut out),
+        Format::Geojson => track()?.write_geojson(&mut out),
+        Format::Kml => track()?.write_kml(&mut out),
+        Format::Czml => track()?.write_czml(&mut out),
+        Format::Oem => write_oem(&ephemerides()?, Utc::of_clock(SystemTime::now()), &mut out),
+        Format::Json | Format::Ndjson | Format::Text => serde_json::to_writer(&mut out, &response),
     };
     Ok(Answer { body: out.whole(written)?, work })
 }
 
-/// What a flight cost, and its rows.
-fn work(flight: &Trajectory, points: Option<&[FlightPoint]>) -> Work {
-    let Statistics { steps, rejected_steps, evaluations } = flight.statistics();
-    let [steps, rejected_steps, evaluations] = [steps, rejected_steps, evaluations].map(|count| count as u64);
-    Work { steps, rejected_steps, evaluations, rows: points.map_or(0, <[_]>::len) as u64 }
+/// What flights cost, and their rows.
+fn work<'a>(flights: impl Iterator<Item = &'a Trajectory>, rows: &[Option<Vec<FlightPoint>>]) -> Work {
+    let mut work = Work { rows: rows.iter().flatten().map(|rows| rows.len() as u64).sum(), ..Work::default() };
+    for flight in flights {
+        let Statistics { steps, rejected_steps, evaluations } = flight.statistics();
+        work.steps += steps as u64;
+        work.rejected_steps += rejected_steps as u64;
+        work.evaluations += evaluations as u64;
+    }
+    work
 }
 
 fn requested_output(format: Format) -> RequestedOutput {
@@ -212,34 +226,49 @@ fn slopes_of(
     slopes(flight, variations, &outputs, interrupt)
 }
 
-/// The rows for which a request asks.
-fn rows(
-    requested: &FlightRequest,
-    flight: &Trajectory,
+/// The rows for which a request asks, of each flight in order, the vehicle's first; the limit is that of all together.
+fn rows<'a>(
+    request: &SimulateRequest,
+    flown: impl Iterator<Item = &'a FlownBody<'a>>,
     limit: usize,
     held: &mut HeldMemory,
-) -> Result<Option<Vec<FlightPoint>>, ApiError> {
-    let Some((sampling, pointer)) = &requested.request.output.sampling else { return Ok(None) };
-    let instants = flight.instants(sampling, limit).map_err(|_| ApiError::TooManyRows { limit, pointer })?;
-    let too_large = ApiError::NoMemory { rows: instants.len() as u64 };
-    let columns = requested.request.output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
-    let bytes = instants.len() * (size_of::<FlightPoint>() + columns * NUMBER);
-    if instants.len() > ROWS_THAT_ALWAYS_FIT && available_memory().is_some_and(|available| available < bytes as u64) {
-        return Err(too_large);
+) -> Result<Vec<Option<Vec<FlightPoint>>>, ApiError> {
+    let output = &request.output;
+    let mut count = 0;
+    let mut wanted = Vec::new();
+    for body in flown {
+        let has_rows = body.path.is_empty() || output.bodies == OutputOfBodies::Full;
+        let sampled = output.sampling.as_ref().filter(|_| has_rows).map(|(sampling, pointer)| {
+            let instants = body.flight.instants(sampling, limit - count);
+            instants.map_err(|_| ApiError::TooManyRows { limit, pointer })
+        });
+        let instants = sampled.transpose()?;
+        count += instants.as_ref().map_or(0, Vec::len);
+        wanted.push((body, instants));
     }
-    held.reserve_rows(instants.len(), bytes)?;
-    let mut points = Vec::new();
-    points.try_reserve_exact(instants.len()).map_err(|_| too_large)?;
-    for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
-        if held.interrupt.is_raised() {
-            return Err(ApiError::Interrupted);
+    let too_large = || ApiError::NoMemory { rows: count as u64 };
+    let columns = output.columns.as_ref().map_or(COLUMNS.len(), Vec::len);
+    let bytes = count * (size_of::<FlightPoint>() + columns * NUMBER);
+    if count > ROWS_THAT_ALWAYS_FIT && available_memory().is_some_and(|available| available < bytes as u64) {
+        return Err(too_large());
+    }
+    held.reserve_rows(count, bytes)?;
+    let points_of = |body: &FlownBody, instants: Vec<f64>| {
+        let mut points = Vec::new();
+        points.try_reserve_exact(instants.len()).map_err(|_| too_large())?;
+        for instants in instants.chunks(ROWS_BETWEEN_LOOKS) {
+            if held.interrupt.is_raised() {
+                return Err(ApiError::Interrupted);
+            }
+            points.extend(body.flight.points(instants));
         }
-        points.extend(flight.points(instants));
-    }
-    match points.iter().find(|point| !point.is_finite()) {
-        Some(point) => Err(SimulationError::Overflow { time: point.time }.into()),
-        None => Ok(Some(points)),
-    }
+        let overflow = |point: &FlightPoint| {
+            let error = SimulationError::Overflow { time: point.time };
+            ApiError::from(BodyError { body: body.path.clone(), error })
+        };
+        points.iter().find(|point| !point.is_finite()).map(overflow).map_or(Ok(points), Err)
+    };
+    wanted.into_iter().map(|(body, instants)| instants.map(|instants| points_of(body, instants)).transpose()).collect()
 }
 
 /// Rows for which nobody asks the system whether it has the memory.
@@ -277,9 +306,11 @@ pub fn convert(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiErro
 pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
     let analytic = TheoryRequest::try_from_tree(tree, requested_output(format)).map_err(ApiError::Invalid)?;
     let flight = fly(&analytic.flight.scenario, interrupt)?;
-    let mut held = HeldMemory::new(&flight, interrupt);
-    let points = rows(&analytic.flight, &flight, row_limit, &mut held)?.unwrap_or_default();
-    let work = work(&flight, Some(&points));
+    let mut held = HeldMemory::new(iter::once(&flight), interrupt);
+    let vehicle = FlownBody::vehicle(&analytic.flight.request, &flight);
+    let rows = rows(&analytic.flight.request, iter::once(&vehicle), row_limit, &mut held)?;
+    let work = work(iter::once(&flight), &rows);
+    let points = rows.into_iter().flatten().next().unwrap_or_default();
     let analyses = analyses(&analytic.flight, &flight, &mut held)?;
     let comparison = analytic.theory.compare(&flight, &points, interrupt)?;
     let response = AnalyticResponse::new(analytic, &flight, &points, comparison, analyses);
@@ -292,7 +323,7 @@ pub fn analytic(tree: Value, format: Format, row_limit: usize, interrupt: &dyn I
 /// What an answer holds in memory while it is made, beside its text.
 struct HeldMemory<'a> {
     interrupt: &'a dyn Interrupt,
-    /// The steps of the flight, and its rows.
+    /// The steps of the flights, and their rows.
     bytes: usize,
     /// What may be held, the text included.
     reserved: usize,
@@ -308,8 +339,8 @@ impl<'a> HeldMemory<'a> {
         Self { interrupt, bytes: 0, reserved: 0, rows: 0 }
     }
 
-    fn new(flight: &Trajectory, interrupt: &'a dyn Interrupt) -> Self {
-        let bytes = flight.held();
+    fn new<'f>(flights: impl Iterator<Item = &'f Trajectory>, interrupt: &'a dyn Interrupt) -> Self {
+        let bytes = flights.map(Trajectory::held).sum();
         Self { interrupt, bytes, reserved: bytes, rows: 0 }
     }
 

@@ -3,7 +3,7 @@
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use reentry::motion::Switch;
-use reentry::simulate::SimulationError;
+use reentry::simulate::{BodyError, SimulationError};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -97,8 +97,8 @@ pub enum ApiError {
         rows: u64,
     },
     /// The flight cannot be finished.
-    #[error("the flight cannot be completed: {0}")]
-    Flight(#[from] SimulationError),
+    #[error("the flight {}cannot be completed: {}", if .0.body.is_empty() { "" } else { "of a body " }, .0.error)]
+    Flight(#[from] BodyError),
     /// The client has sent more requests than it may, or holds as much as it may.
     #[error("this client has reached its request limit; try again in {seconds} s")]
     TooManyRequests {
@@ -201,7 +201,7 @@ impl ApiError {
                 (Status::UNPROCESSABLE_ENTITY, "/problems/row-limit", "Too many rows")
             }
             Self::TooLarge { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/answer-too-large", "Answer too large"),
-            Self::Flight(flight) => match flight {
+            Self::Flight(BodyError { error, .. }) => match error {
                 StepLimit { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-limit", "Too many steps"),
                 Singularity { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/singularity", "Singular equations"),
                 TooStiff { .. } => (Status::UNPROCESSABLE_ENTITY, "/problems/step-size", "Too stiff to integrate"),
@@ -247,29 +247,43 @@ impl ApiError {
                 "/output",
                 format!("gives {rows} rows, too many for the available memory; request fewer, for example with count"),
             ),
-            Self::Flight(SimulationError::Singularity { .. }) => {
-                one("/solver/formulation", "use \"cartesian\", which has no such singularity".to_owned())
-            }
-            Self::Flight(SimulationError::NothingLeft { .. }) => {
-                one("/events", "switch the thrust off with an event, or set its propellant".to_owned())
-            }
-            Self::Flight(SimulationError::NoDirection { event, .. }) => one(
-                &format!("/events/{event}/then/thrust/along"),
-                "switch the thrust off or end the flight when the vehicle comes to rest or before, for example where \
-                 the speed falls through 0; or use a direction that is defined at rest, \"radial\" or an inertial one"
-                    .to_owned(),
-            ),
-            Self::Flight(SimulationError::Chatter { switch, .. }) => {
-                let advice = "use \"interpolation\": \"linear\", or another quantity in \"against\"";
-                match switch {
-                    Switch::BankAngle => one("/control/bank_angle", advice.to_owned()),
-                    Switch::AngleOfAttack => one("/control/angle_of_attack", advice.to_owned()),
-                    _ => Vec::new(),
-                }
-            }
+            Self::Flight(error) => fields_of_flight(error),
             _ => Vec::new(),
         }
     }
+}
+
+impl From<SimulationError> for ApiError {
+    fn from(error: SimulationError) -> Self {
+        Self::Flight(error.into())
+    }
+}
+
+/// The field at fault where a flight cannot be finished: of a body that of its separation, or one below it.
+fn fields_of_flight(BodyError { body, error }: &BodyError) -> Vec<FieldError> {
+    let separation: String =
+        body.iter().map(|(event, separation)| format!("/events/{event}/then/separate/{separation}")).collect();
+    let (pointer, advice) = match error {
+        SimulationError::Singularity { .. } => {
+            ("/solver/formulation".to_owned(), "use \"cartesian\", which has no such singularity")
+        }
+        SimulationError::NothingLeft { .. } => {
+            (format!("{separation}/events"), "switch the thrust off with an event, or set its propellant")
+        }
+        SimulationError::NoDirection { event, .. } => (
+            format!("{separation}/events/{event}/then/thrust/along"),
+            "switch the thrust off or end the flight when the vehicle comes to rest or before, for example where the \
+             speed falls through 0; or use a direction that is defined at rest, \"radial\" or an inertial one",
+        ),
+        SimulationError::Chatter { switch: switch @ (Switch::BankAngle | Switch::AngleOfAttack), .. } => {
+            let command = if *switch == Switch::BankAngle { "bank_angle" } else { "angle_of_attack" };
+            let advice = "use \"interpolation\": \"linear\", or another quantity in \"against\"";
+            (format!("{separation}/control/{command}"), advice)
+        }
+        _ if body.is_empty() => return Vec::new(),
+        error => return vec![FieldError { pointer: separation, detail: error.to_string() }],
+    };
+    vec![FieldError { pointer, detail: advice.to_owned() }]
 }
 
 impl From<Refusal> for ApiError {
@@ -320,5 +334,25 @@ impl IntoResponse for ApiError {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_that_fails_is_told_by_its_separation() {
+        let at = |body: &[(usize, usize)], error| ApiError::Flight(BodyError { body: body.to_vec(), error }).problem();
+        let limit = SimulationError::StepLimit { time: 1.0, limit: 10 };
+        assert!(at(&[], limit).errors.is_empty());
+        let problem = at(&[(3, 0), (1, 2)], limit);
+        assert_eq!(problem.errors[0].pointer, "/events/3/then/separate/0/events/1/then/separate/2");
+        assert_eq!(problem.errors[0].detail, limit.to_string());
+        assert_eq!(problem.detail, format!("the flight of a body cannot be completed: {limit}"));
+        let rest = SimulationError::NoDirection { event: 4, time: 1.0, altitude: 0.0 };
+        assert_eq!(at(&[(3, 0)], rest).errors[0].pointer, "/events/3/then/separate/0/events/4/then/thrust/along");
+        let pole = SimulationError::Singularity { time: 1.0, at: reentry::motion::Singularity::Pole };
+        assert_eq!(at(&[(3, 0)], pole).errors[0].pointer, "/solver/formulation");
     }
 }

@@ -15,7 +15,7 @@ use std::borrow::Borrow;
 use std::sync::atomic::AtomicBool;
 
 use reentry::Interrupt;
-use reentry::simulate::SimulationError;
+use reentry::simulate::{BodyError, SimulationError};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -92,6 +92,8 @@ pub enum Group {
     StandardAir,
     /// Coordinates and orbital elements.
     Frames,
+    /// Launches and separations, as closed forms have them.
+    Ascents,
     /// Entries at other planets, as another program flies them.
     Bodies,
     /// Flights that were flown.
@@ -257,7 +259,10 @@ fn convert(request: Value) -> Value {
 /// The tree of an answer; null where there is none, in which no check finds what it expects.
 fn answered(result: Result<Answer, ApiError>) -> Result<Value, ApiError> {
     match result {
-        Err(error @ (ApiError::Interrupted | ApiError::Flight(SimulationError::Interrupted { .. }))) => Err(error),
+        Err(
+            error @ (ApiError::Interrupted
+            | ApiError::Flight(BodyError { error: SimulationError::Interrupted { .. }, .. })),
+        ) => Err(error),
         result => Ok(result.ok().and_then(|answer| json::parse(&answer.body).ok()).unwrap_or_default()),
     }
 }

@@ -27,6 +27,7 @@ pub mod wind;
 
 pub mod analytic;
 pub mod batch;
+pub mod bodies;
 pub mod columns;
 pub mod convert;
 pub mod dispersions;

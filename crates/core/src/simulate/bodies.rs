@@ -30,6 +30,23 @@ pub struct SeparatedBody {
     pub trajectory: Trajectory,
 }
 
+impl Flights {
+    /// A flight whose bodies are not flown.
+    pub fn of_vehicle(vehicle: Trajectory) -> Self {
+        Self { vehicle, bodies: Vec::new() }
+    }
+
+    /// All flights, that of the vehicle first.
+    pub fn all(&self) -> impl Iterator<Item = &Trajectory> {
+        std::iter::once(&self.vehicle).chain(self.bodies.iter().map(|body| &body.trajectory))
+    }
+
+    /// The places of event and separation of the body of a place in the list, after those of the bodies from which it comes.
+    pub fn path(&self, body: usize) -> Vec<(usize, usize)> {
+        path(&self.bodies, Some(body))
+    }
+}
+
 /// Why a flight or that of a body could not be finished.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}")]
@@ -40,14 +57,19 @@ pub struct BodyError {
     pub error: SimulationError,
 }
 
+impl From<SimulationError> for BodyError {
+    fn from(error: SimulationError) -> Self {
+        Self { body: Vec::new(), error }
+    }
+}
+
 /// Flies a scenario as [`simulate`] does, and then all bodies that leave the vehicle, and that leave them. The limit on the steps is that of
 /// all flights together.
 ///
 /// # Errors
 /// Those of [`simulate`], of the first flight that has one.
 pub fn simulate_with_bodies(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Flights, BodyError> {
-    let of_vehicle = |error| BodyError { body: Vec::new(), error };
-    let vehicle = simulate(scenario, interrupt).map_err(of_vehicle)?;
+    let vehicle = simulate(scenario, interrupt)?;
     let mut held = vehicle.held();
     let limit = scenario.case().solver.step_limit;
     let mut left = limit.saturating_sub(taken(&vehicle));
@@ -66,7 +88,9 @@ pub fn simulate_with_bodies(scenario: &Scenario, interrupt: &dyn Interrupt) -> R
                 SimulationError::StepLimit { time, .. } => SimulationError::StepLimit { time, limit },
                 other => other,
             };
-            BodyError { body: path(&bodies, parent, &record), error }
+            let mut body = path(&bodies, parent);
+            body.push((record.event, record.place));
+            BodyError { body, error }
         };
         let trajectory = simulate(&Scenario::unchecked(case), &already).map_err(of_body)?;
         held += trajectory.held();
@@ -99,13 +123,12 @@ fn first(waiting: &[(Option<usize>, SeparationRecord)]) -> Option<usize> {
     times.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
 }
 
-/// The events and separations that led to a body.
-fn path(bodies: &[SeparatedBody], parent: Option<usize>, record: &SeparationRecord) -> Vec<(usize, usize)> {
-    let mut path = vec![(record.event, record.place)];
-    let mut next = parent;
-    while let Some(body) = next.and_then(|place| bodies.get(place)) {
-        path.push((body.event, body.separation));
-        next = body.parent;
+/// The events and separations that led to the body of a place in the list; none to the vehicle.
+fn path(bodies: &[SeparatedBody], mut body: Option<usize>) -> Vec<(usize, usize)> {
+    let mut path = Vec::new();
+    while let Some(SeparatedBody { parent, event, separation, .. }) = body.and_then(|place| bodies.get(place)) {
+        path.push((*event, *separation));
+        body = *parent;
     }
     path.reverse();
     path

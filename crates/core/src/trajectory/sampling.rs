@@ -7,7 +7,7 @@ use super::Trajectory;
 pub enum Sampling {
     /// So many a step, the last at its end: many where the motion is fast, few where it is slow.
     PerStep(usize),
-    /// Every so many seconds.
+    /// Every so many seconds of the clock, whenever the flight starts.
     Interval(f64),
     /// So many, evenly in time, both ends included.
     Count(usize),
@@ -33,7 +33,13 @@ impl Trajectory {
         let wanted = match sampling {
             Sampling::PerStep(samples) => samples.saturating_mul(self.flown.steps.len()),
             Sampling::Count(count) => *count,
-            Sampling::Interval(_) | Sampling::Times(_) => 0,
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "not negative, and more than fits is more than allowed"
+            )]
+            Sampling::Interval(interval) => ((end - start) / interval) as usize,
+            Sampling::Times(_) => 0,
         };
         if wanted > limit {
             return Err(TooManyInstants { limit });
@@ -48,9 +54,9 @@ impl Trajectory {
                 }
             }
             Sampling::Interval(interval) => {
-                let mut sample = 1;
-                while instants.push(start + ratio(sample, 1) * interval)? {
-                    sample += 1;
+                let before = (start / interval).floor();
+                for sample in 1..=wanted + 1 {
+                    instants.push((before + ratio(sample, 1)) * interval)?;
                 }
             }
             Sampling::Count(count) => {

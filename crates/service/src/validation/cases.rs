@@ -48,6 +48,12 @@ pub const FLIGHTS: &str = include_str!("../../../../tests/cases/flights/flights.
 /// Flights of another program at other planets.
 pub const AMAT: &str = include_str!("../../../../tests/cases/bodies/amat.json");
 
+/// Launches and separations with closed forms.
+pub const CLOSED_FORMS: &str = include_str!("../../../../tests/cases/ascents/closed_forms.json");
+
+/// Stages of launchers that were flown.
+pub const LAUNCHERS: &str = include_str!("../../../../tests/cases/flights/launchers.json");
+
 /// Flights that were flown at other planets.
 pub const FLIGHTS_AT_PLANETS: &str = include_str!("../../../../tests/cases/flights/planets.json");
 

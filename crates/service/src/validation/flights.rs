@@ -1,5 +1,5 @@
-//! Entries that were flown, beside what was published of them: not all is known that they depend on, and nothing is tuned. And entries at
-//! other planets as another program flies them.
+//! Launches beside closed forms, entries at other planets as another program flies them, and flights that were flown, beside what was published
+//! of them: not all is known that those depend on, and nothing is tuned.
 
 use serde_json::{Map, Value, json};
 
@@ -8,10 +8,12 @@ use super::{Check, Expected, Group, Origin, Program};
 use crate::error::ApiError;
 
 pub(super) fn checks(program: Program) -> Result<Vec<Check>, ApiError> {
+    let closed_forms = of_file(program, Group::Ascents, &tree(cases::CLOSED_FORMS))?;
     let of_another_program = of_file(program, Group::Bodies, &tree(cases::AMAT))?;
     let on_earth = of_file(program, Group::Flights, &tree(cases::FLIGHTS))?;
     let elsewhere = of_file(program, Group::Flights, &tree(cases::FLIGHTS_AT_PLANETS))?;
-    Ok([of_another_program, on_earth, elsewhere].concat())
+    let launchers = of_file(program, Group::Flights, &tree(cases::LAUNCHERS))?;
+    Ok([closed_forms, of_another_program, on_earth, elsewhere, launchers].concat())
 }
 
 fn of_file(program: Program, group: Group, file: &Value) -> Result<Vec<Check>, ApiError> {

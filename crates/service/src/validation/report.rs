@@ -66,6 +66,7 @@ impl Group {
             Self::CheckCases => "NASA's check cases",
             Self::StandardAir => "The U.S. Standard Atmosphere, 1976",
             Self::Frames => "Coordinates and orbital elements",
+            Self::Ascents => "Launches and separations compared with closed forms",
             Self::Bodies => "Entries at other planets compared with AMAT",
             Self::Flights => "Real flights, for information only",
         }

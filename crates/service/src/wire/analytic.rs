@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
+use super::bodies::FlownBody;
 use super::description::{self, Object, Words, word};
 use super::dispersions::Covariance;
 use super::reader::Fault;
@@ -298,7 +299,8 @@ impl AnalyticResponse {
             flight_path_angle: angles.into_iter().map(|angle| angle.map(|angle| unit.from_radians(angle))).collect(),
             drag_deceleration: column(|prediction| prediction.drag_deceleration),
         };
-        let mut warnings = Warning::of(&request, flight, analyses.unverified, Purpose::Theory);
+        let mut warnings =
+            Warning::of(&request, &FlownBody::vehicle(&request, flight), analyses.unverified, Purpose::Theory);
         if request.control.bank_angle.is_given() {
             warnings.push(Warning::bank_left_out());
         }

@@ -13,6 +13,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 use super::AngleUnit;
 use super::epoch::{Epoch, Utc};
+use super::shown::printable;
 
 /// One quantity of the flight: a key of the states, a column of the trajectory.
 #[derive(Debug)]
@@ -21,10 +22,20 @@ pub struct Column {
     pub name: &'static str,
     /// Its meaning and unit.
     pub description: &'static str,
-    /// Whether it is given only where `output.columns` names it.
-    on_request: bool,
+    given: Given,
     requirement: Requirement,
     quantity: ColumnSource,
+}
+
+/// Where a column is given that the case has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Given {
+    /// Unless `output.columns` names others.
+    Unasked,
+    /// Where `output.columns` names it, and of vehicles with parts unasked.
+    WithParts,
+    /// Where `output.columns` names it.
+    OnRequest,
 }
 
 /// What a case must have for a column.
@@ -38,6 +49,7 @@ enum Requirement {
     Heating,
     ChangingMass,
     Thrust,
+    Parts,
 }
 
 /// How a column is made from a point of the flight.
@@ -49,6 +61,8 @@ enum ColumnSource {
     Turn(fn(&FlightPoint) -> f64),
     /// Null where there is none.
     Maybe(fn(&FlightPoint) -> Option<f64>),
+    /// An angle; null where there is none.
+    MaybeAngle(fn(&FlightPoint) -> Option<f64>),
     /// Of the osculating orbit; null where it has none.
     Orbit(fn(&Orbit) -> Option<f64>),
     /// An angle of the osculating orbit, in [0, 2π); null where it has none.
@@ -75,6 +89,8 @@ pub struct AvailableQuantities {
     pub changing_mass: bool,
     /// Whether a thrust may be on.
     pub thrust: bool,
+    /// Whether the vehicle has parts.
+    pub parts: bool,
     /// Where it flies.
     pub planet: Planet,
     /// Whether that is an Earth.
@@ -98,7 +114,7 @@ impl Orbit {
 }
 
 const fn of(name: &'static str, description: &'static str, quantity: ColumnSource) -> Column {
-    Column { name, description, on_request: false, requirement: Requirement::Nothing, quantity }
+    Column { name, description, given: Given::Unasked, requirement: Requirement::Nothing, quantity }
 }
 
 const fn column(name: &'static str, description: &'static str, value: fn(&FlightPoint) -> f64) -> Column {
@@ -119,15 +135,15 @@ const fn maybe(
 }
 
 const fn orbit(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
-    Column { on_request: true, ..of(name, description, ColumnSource::Orbit(value)) }
+    Column { given: Given::OnRequest, ..of(name, description, ColumnSource::Orbit(value)) }
 }
 
 const fn orbit_turn(name: &'static str, description: &'static str, value: fn(&Orbit) -> Option<f64>) -> Column {
-    Column { on_request: true, ..of(name, description, ColumnSource::OrbitTurn(value)) }
+    Column { given: Given::OnRequest, ..of(name, description, ColumnSource::OrbitTurn(value)) }
 }
 
 /// Every quantity, in the order of the answer.
-pub static COLUMNS: [Column; 45] = [
+pub static COLUMNS: [Column; 47] = [
     column("time", "Time since the start, s.", |point| point.time),
     column("altitude", "Altitude above the planet's surface along the radius vector, m.", |point| point.loads.altitude),
     column("radius", "Distance from the planet's centre, m.", |point| point.flight_path.radius),
@@ -250,7 +266,8 @@ pub static COLUMNS: [Column; 45] = [
     ),
     maybe(
         "heat_load",
-        "Integral of both heat fluxes since the start, J/m²; present with `heating`.",
+        "Integral of both heat fluxes since the start or, of a body, since its separation, J/m²; present with \
+         `heating`.",
         Requirement::Heating,
         |point| point.heat_load,
     ),
@@ -262,7 +279,11 @@ pub static COLUMNS: [Column; 45] = [
     ),
     Column {
         requirement: Requirement::ChangingMass,
-        ..column("mass", "Mass of the vehicle, kg; present if an event may change it.", |point| point.mass)
+        ..column(
+            "mass",
+            "Mass of the vehicle, kg; present if an event may change it, or the vehicle has parts.",
+            |point| point.mass,
+        )
     },
     column(
         "ground_range",
@@ -272,7 +293,8 @@ pub static COLUMNS: [Column; 45] = [
     ),
     column(
         "ground_distance",
-        "Length of the ground track since the start, m, on the sphere with the equatorial radius.",
+        "Length of the ground track since the start or, of a body, since its separation, m, on the sphere with the \
+         equatorial radius.",
         |point| point.ground_distance,
     ),
     orbit("semi_major_axis", SEMI_MAJOR_AXIS, |orbit| match orbit.elements.shape {
@@ -320,16 +342,34 @@ pub static COLUMNS: [Column; 45] = [
         |orbit| Some(orbit.elements.periapsis_radius() - orbit.equatorial_radius),
     ),
     Column {
-        on_request: true,
+        given: Given::WithParts,
         requirement: Requirement::Thrust,
         ..column(
             "thrust",
-            "Magnitude of the thrust, N; 0 while it is off; present if an event switches it on.",
+            "Magnitude of the thrust, N; 0 while it is off; present if an event switches it on, or the vehicle has \
+             parts.",
             |point| point.thrust,
         )
     },
     Column {
-        on_request: true,
+        requirement: Requirement::Parts,
+        ..column(
+            "throttle",
+            "Thrust of all engines that are lit over their full thrust, both in vacuum: what throttles and the load \
+             limit leave of it; 0 while none is lit; present if the vehicle has parts.",
+            |point| point.throttle,
+        )
+    },
+    Column {
+        requirement: Requirement::Parts,
+        ..of(
+            "pitch",
+            "Angle of the vehicle's axis above the plane normal to the radius; present if the vehicle has parts.",
+            ColumnSource::MaybeAngle(|point| point.pitch),
+        )
+    },
+    Column {
+        given: Given::OnRequest,
         ..column(
             "energy",
             "Energy relative to the rotating planet, J/kg: half the squared relative speed plus the gravitational \
@@ -392,13 +432,19 @@ impl Column {
             Requirement::Heating if !available.heating => Some("heating"),
             Requirement::ChangingMass if !available.changing_mass => Some("an event that changes it"),
             Requirement::Thrust if !available.thrust => Some("an event that switches a thrust on"),
+            Requirement::Parts if !available.parts => Some("a vehicle with parts"),
             _ => None,
         }
     }
 
     /// Every column that the case has unasked.
-    fn all(available: AvailableQuantities) -> impl Iterator<Item = &'static Self> {
-        COLUMNS.iter().filter(move |column| !column.on_request && column.missing(available).is_none())
+    pub fn all(available: AvailableQuantities) -> impl Iterator<Item = &'static Self> {
+        let is_given = move |column: &Self| match column.given {
+            Given::Unasked => true,
+            Given::WithParts => available.parts,
+            Given::OnRequest => false,
+        };
+        COLUMNS.iter().filter(move |column| is_given(column) && column.missing(available).is_none())
     }
 
     fn of(&self, point: &FlightPoint, unit: AngleUnit, available: &AvailableQuantities) -> Cell {
@@ -408,6 +454,7 @@ impl Column {
             ColumnSource::Angle(value) => Cell::Number(unit.from_radians(value(point))),
             ColumnSource::Turn(value) => Cell::Number(unit.turn_from_radians(value(point))),
             ColumnSource::Maybe(value) => or_nothing(value(point)),
+            ColumnSource::MaybeAngle(value) => or_nothing(value(point).map(|angle| unit.from_radians(angle))),
             ColumnSource::Orbit(value) => or_nothing(Orbit::of(point, available).as_ref().and_then(value)),
             ColumnSource::OrbitTurn(value) => {
                 let angle = Orbit::of(point, available).as_ref().and_then(value);
@@ -419,11 +466,6 @@ impl Column {
         }
     }
 
-    /// Whether it is given where `output.columns` does not name it.
-    pub fn is_unasked(&self) -> bool {
-        !self.on_request
-    }
-
     /// Whether it is a number, and not an instant.
     pub fn is_number(&self) -> bool {
         !matches!(self.quantity, ColumnSource::Utc)
@@ -431,7 +473,8 @@ impl Column {
 
     /// Whether it is an angle, which may go around.
     pub fn turns(&self) -> bool {
-        matches!(self.quantity, ColumnSource::Angle(_) | ColumnSource::Turn(_) | ColumnSource::OrbitTurn(_))
+        use ColumnSource::{Angle, MaybeAngle, OrbitTurn, Turn};
+        matches!(self.quantity, Angle(_) | Turn(_) | MaybeAngle(_) | OrbitTurn(_))
     }
 
     /// Its number at a point of the flight, in the unit of the request; none where there is none.
@@ -489,24 +532,49 @@ impl PartialSchema for Row {
             let object = object.property(column.name, column.schema().description(Some(column.description)));
             if column.requirement == Requirement::Nothing { object.required(column.name) } else { object }
         };
-        COLUMNS.iter().filter(|column| !column.on_request).fold(object, with).into()
+        COLUMNS.iter().filter(|column| column.given != Given::OnRequest).fold(object, with).into()
     }
 }
 
 impl ToSchema for Row {}
 
+/// A column that a request names.
+#[derive(Clone, Debug)]
+pub enum AskedColumn {
+    /// One of [`COLUMNS`].
+    Listed(&'static Column),
+    /// What is left of the propellant of the part of this name.
+    Propellant(String),
+}
+
+/// What the name of a column begins with that has the propellant of a part.
+pub const PROPELLANT: &str = "propellant.";
+
 /// The trajectory: one array a quantity, all of one length, time strictly increasing.
 #[derive(Clone, Debug)]
 pub struct Columns {
     points: Vec<FlightPoint>,
-    chosen: Vec<&'static Column>,
+    chosen: Vec<ChosenColumn>,
     unit: AngleUnit,
     available: AvailableQuantities,
 }
 
+/// A column of a trajectory.
+#[derive(Clone, Debug)]
+enum ChosenColumn {
+    Listed(&'static Column),
+    Propellant {
+        /// Of the column.
+        name: String,
+        /// One a row, kg; none where the flight has no part of the name.
+        values: Option<Vec<Option<f64>>>,
+    },
+}
+
 impl Serialize for Columns {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.chosen.iter().map(|column| (column.name, Values { column, columns: self })))
+        let columns = self.chosen.iter().filter(|column| column.is_had(self.available));
+        serializer.collect_map(columns.map(|column| (column.name(), Values { column, columns: self })))
     }
 }
 
@@ -514,7 +582,8 @@ impl PartialSchema for Columns {
     fn schema() -> RefOr<Schema> {
         let description = "Trajectory: one array per quantity, all of the same length; time is strictly increasing. \
                            With `output.columns`, it has only the named columns; some columns are given only if \
-                           named.";
+                           named. A column `propellant.NAME` has the propellant that is left in the part of the name, \
+                           kg, of all of its count together; null once the part has left.";
         let object = ObjectBuilder::new().description(Some(description));
         let with = |object: ObjectBuilder, column: &Column| {
             let array = ArrayBuilder::new().items(column.schema()).description(Some(column.description));
@@ -527,15 +596,19 @@ impl PartialSchema for Columns {
 impl ToSchema for Columns {}
 
 struct Values<'a> {
-    column: &'a Column,
+    column: &'a ChosenColumn,
     columns: &'a Columns,
 }
 
 impl Serialize for Values<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Columns { points, unit, available, .. } = self.columns;
+        let column = match self.column {
+            ChosenColumn::Listed(column) => column,
+            ChosenColumn::Propellant { values, .. } => return serializer.collect_seq(values.iter().flatten()),
+        };
         // The kind of the quantity is looked at once, not at every value.
-        match self.column.quantity {
+        match column.quantity {
             ColumnSource::Number(value) => serializer.collect_seq(points.iter().map(value)),
             ColumnSource::Angle(value) => {
                 serializer.collect_seq(points.iter().map(|point| unit.from_radians(value(point))))
@@ -544,22 +617,54 @@ impl Serialize for Values<'_> {
                 serializer.collect_seq(points.iter().map(|point| unit.turn_from_radians(value(point))))
             }
             ColumnSource::Maybe(value) => serializer.collect_seq(points.iter().map(value)),
-            ColumnSource::Utc | ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_) => {
-                serializer.collect_seq(points.iter().map(|point| self.column.of(point, *unit, available)))
+            ColumnSource::MaybeAngle(_) | ColumnSource::Utc | ColumnSource::Orbit(_) | ColumnSource::OrbitTurn(_) => {
+                serializer.collect_seq(points.iter().map(|point| column.of(point, *unit, available)))
             }
         }
     }
 }
 
+impl ChosenColumn {
+    fn name(&self) -> &str {
+        match self {
+            Self::Listed(column) => column.name,
+            Self::Propellant { name, .. } => name,
+        }
+    }
+
+    /// Whether a flight of which so much is available has it.
+    fn is_had(&self, available: AvailableQuantities) -> bool {
+        match self {
+            Self::Listed(column) => column.missing(available).is_none(),
+            Self::Propellant { values, .. } => values.is_some(),
+        }
+    }
+}
+
 impl Columns {
-    /// The chosen columns at the points of a flight of which so much is available; without a choice all that are given unasked.
+    /// The chosen columns at the points of a flight, of which so much is available and whose vehicle has parts of these names; without a choice
+    /// all that are given unasked.
     pub fn new(
         points: Vec<FlightPoint>,
-        chosen: Option<Vec<&'static Column>>,
+        chosen: Option<&[AskedColumn]>,
         unit: AngleUnit,
         available: AvailableQuantities,
+        propellant: impl Fn(&FlightPoint, &str) -> Option<Option<f64>>,
     ) -> Self {
-        let chosen = chosen.unwrap_or_else(|| Column::all(available).collect());
+        let of_part = |part: &str| ChosenColumn::Propellant {
+            name: format!("{PROPELLANT}{part}"),
+            values: points.iter().map(|point| propellant(point, part)).collect(),
+        };
+        let chosen = match chosen {
+            None => Column::all(available).map(ChosenColumn::Listed).collect(),
+            Some(chosen) => {
+                let column = |asked: &AskedColumn| match asked {
+                    AskedColumn::Listed(column) => ChosenColumn::Listed(column),
+                    AskedColumn::Propellant(part) => of_part(part),
+                };
+                chosen.iter().map(column).collect()
+            }
+        };
         Self { points, chosen, unit, available }
     }
 
@@ -573,28 +678,56 @@ impl Columns {
         self.available.epoch
     }
 
-    /// A header of the names and a line an instant, by RFC 4180 but for the line ends.
+    fn cell(&self, column: &ChosenColumn, row: usize) -> Cell {
+        match column {
+            ChosenColumn::Listed(column) => column.of(&self.points[row], self.unit, &self.available),
+            ChosenColumn::Propellant { values, .. } => {
+                let value = values.as_ref().and_then(|values| values[row]);
+                value.map_or(Cell::Nothing, Cell::Number)
+            }
+        }
+    }
+
+    /// A header of the names after a beginning, by RFC 4180 but for the line ends.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn write_csv(&self, csv: &mut impl Write) -> Result<(), serde_json::Error> {
-        let line = |csv: &mut _, text: &[u8]| Write::write_all(csv, text).map_err(serde_json::Error::io);
-        let names: Vec<_> = self.chosen.iter().map(|column| column.name).collect();
-        line(csv, names.join(",").as_bytes())?;
-        line(csv, b"\n")?;
-        for point in &self.points {
+    pub fn write_csv_header(&self, csv: &mut impl Write, beginning: &str) -> Result<(), serde_json::Error> {
+        text(csv, beginning)?;
+        let names = self.chosen.iter().map(|column| csv_text(column.name()));
+        text(csv, &names.collect::<Vec<_>>().join(","))?;
+        text(csv, "\n")
+    }
+
+    /// A line an instant, each with the same beginning.
+    ///
+    /// # Errors
+    /// When they cannot be written.
+    pub fn write_csv_lines(&self, csv: &mut impl Write, beginning: &str) -> Result<(), serde_json::Error> {
+        for row in 0..self.points.len() {
+            text(csv, beginning)?;
             for (index, column) in self.chosen.iter().enumerate() {
                 if index > 0 {
-                    line(csv, b",")?;
+                    text(csv, ",")?;
                 }
-                match column.of(point, self.unit, &self.available) {
+                match self.cell(column, row) {
                     Cell::Number(number) => serde_json::to_writer(&mut *csv, &number)?,
                     Cell::Instant(instant) => write!(csv, "{instant}").map_err(serde_json::Error::io)?,
                     Cell::Nothing => {}
                 }
             }
-            line(csv, b"\n")?;
+            text(csv, "\n")?;
         }
         Ok(())
     }
+}
+
+fn text(csv: &mut impl Write, text: &str) -> Result<(), serde_json::Error> {
+    csv.write_all(text.as_bytes()).map_err(serde_json::Error::io)
+}
+
+/// A text as a cell on one line: in quotation marks where it needs them, and escaped where it would leave the line.
+pub fn csv_text(text: &str) -> String {
+    let line = printable(text);
+    if line.contains([',', '"']) { format!("\"{}\"", line.replace('"', "\"\"")) } else { line }
 }

@@ -98,6 +98,11 @@ impl ControlRequest {
         Control { bank_angle: bank_angle.to_core(events), angle_of_attack: angle_of_attack.to_core(events) }
     }
 
+    /// Whether the axis of the vehicle has a direction that stays in the inertial frame.
+    pub(super) fn is_inertial(&self) -> bool {
+        self.steering.as_ref().is_some_and(Steering::is_inertial)
+    }
+
     /// Names of events that are not those of one event alone.
     pub(super) fn name_faults(&self, events: &[Event]) -> Vec<Fault> {
         let Self { bank_angle, angle_of_attack, steering } = self;

@@ -18,7 +18,7 @@
 mod field;
 mod words;
 
-pub use field::Field;
+pub use field::{Field, NameOr};
 pub use words::{AngleOrObject, BooleanOrObject, Word, WordOrObject, Words, word};
 
 use reentry::interpolation::TableError;

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::columns::{AvailableQuantities, COLUMNS, Column};
+use super::columns::{AvailableQuantities, Column};
 use super::description::{Object, variant};
 use super::numbers::{Change, MOST_VARIED, Numbers, Varied, immovable};
 use super::outputs::{At, FlightOutput, ground_point};
@@ -197,9 +197,7 @@ impl Dispersion {
 
     /// The columns that are given: the numbers that the case has unasked.
     fn columns(known: AvailableQuantities) -> impl Iterator<Item = &'static Column> {
-        COLUMNS
-            .iter()
-            .filter(move |column| column.is_unasked() && column.is_number() && column.missing(known).is_none())
+        Column::all(known).filter(|column| column.is_number())
     }
 }
 

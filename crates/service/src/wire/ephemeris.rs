@@ -8,6 +8,7 @@ use std::io::{self, Write};
 use reentry::body::Body;
 use reentry::coordinates::{Inertial, TESTED_YEARS, about_pole, gcrf_to_planet_fixed};
 use reentry::planet::Planet as CorePlanet;
+use reentry::simulate::Flights;
 use reentry::trajectory::{EventPoint, FlightPoint, PhaseStart, Trajectory};
 use serde_json::json;
 
@@ -15,7 +16,7 @@ use super::columns::Columns;
 use super::epoch::{Epoch, Utc};
 use super::planet::{Planet, PlanetModel};
 use super::reader::Fault;
-use super::trajectory::SimulateResponse;
+use super::trajectory::{FlightOfAnswer, Models, SimulateResponse};
 
 /// The body whose equator the frame MCI has; of other planets the standard names no frame.
 const MARS: &str = "mars";
@@ -40,7 +41,10 @@ enum Center {
 /// One body that flies: its states, cut where its motion or what moves it jumps.
 #[derive(Clone, Debug)]
 pub struct Ephemeris<'a> {
-    answer: &'a SimulateResponse,
+    models: &'a Models,
+    /// That of the body or, of the vehicle, of the case.
+    name: Option<&'a str>,
+    told: FlightOfAnswer<'a>,
     frame: MessageFrame,
     segments: Vec<Segment<'a>>,
 }
@@ -133,16 +137,21 @@ fn unknown_rotation(what: &str) -> Fault {
 }
 
 impl<'a> Ephemeris<'a> {
-    /// The states of a flight: its rows, and those on both sides of every jump.
+    /// The states of every flight of an answer that has rows: these, and those on both sides of every jump.
     ///
     /// # Errors
-    /// When the flight goes on after the last year for which its frame is known, or that can be written.
-    pub fn new(
-        answer: &'a SimulateResponse,
-        rows: &'a Columns,
-        flight: &Trajectory,
-        frame: MessageFrame,
-    ) -> Result<Self, Fault> {
+    /// When a flight goes on after the last year for which its frame is known, or that can be written.
+    pub fn all(answer: &'a SimulateResponse, flights: &Flights, frame: MessageFrame) -> Result<Vec<Self>, Fault> {
+        let of_flight = |(told, flight): (FlightOfAnswer<'a>, &Trajectory)| {
+            let rows = told.report.trajectory.as_ref()?;
+            let name = told.body.or(answer.name.as_deref());
+            let segments = Self::segments(rows, flight, &frame);
+            Some(segments.map(|segments| Self { models: &answer.models, name, told, frame, segments }))
+        };
+        answer.flights().zip(flights.all()).filter_map(of_flight).collect()
+    }
+
+    fn segments(rows: &'a Columns, flight: &Trajectory, frame: &MessageFrame) -> Result<Vec<Segment<'a>>, Fault> {
         let Some(end) = frame.epoch.utc(flight.end_time()) else {
             return Err(Fault::new("/epoch", "must let the flight end before the year 10000 for OEM"));
         };
@@ -163,7 +172,7 @@ impl<'a> Ephemeris<'a> {
         } else {
             segments.truncate(1);
         }
-        Ok(Self { answer, frame, segments })
+        Ok(segments)
     }
 
     fn write(&self, out: &mut impl Write) -> io::Result<()> {
@@ -177,14 +186,14 @@ impl<'a> Ephemeris<'a> {
         Ok(())
     }
 
-    /// The name of the case in what the message can hold: printable ASCII, and lines of 254 characters.
+    /// The name in what the message can hold: printable ASCII, and lines of 254 characters.
     fn name(&self) -> String {
         let printable = |character: char| match character {
             ' '..='~' => character,
             _ if character.is_whitespace() => ' ',
             _ => '?',
         };
-        let given = self.answer.name.as_deref().unwrap_or_default();
+        let given = self.name.unwrap_or_default();
         let name: String = given.chars().map(printable).take(LONGEST_NAME).collect();
         let name = name.trim();
         if name.is_empty() { UNKNOWN.to_owned() } else { name.to_owned() }
@@ -192,10 +201,10 @@ impl<'a> Ephemeris<'a> {
 
     /// How it was flown, how it ended, and the codes of the warnings.
     fn comments(&self) -> Vec<String> {
-        let SimulateResponse { models, termination, warnings, .. } = self.answer;
+        let (models, FlightOfAnswer { report, warnings, .. }) = (self.models, self.told);
         let mut comments = vec![
             format!("planet {}, atmosphere {}, gravity {}", models.planet, models.atmosphere, models.gravity),
-            format!("end {}", json!(termination).as_str().unwrap_or_default()),
+            format!("end {}", json!(report.termination).as_str().unwrap_or_default()),
         ];
         if matches!(self.frame.center, Center::Earth) {
             comments.push("GCRF without polar motion, and with UT1 taken as UTC".to_owned());

@@ -14,6 +14,7 @@ use reentry::scenario::{Bound, MOST_BODIES};
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
 
+use super::control::ControlRequest;
 use super::description::{Field, Object, WordOrObject, Words, word};
 use super::parts::{MOST_PARTS, NamedPart};
 use super::reader::{Fault, MOST_FAULTS};
@@ -558,7 +559,7 @@ impl Event {
             let needs_parts = [("load_limit", then.core.load_limit.is_some()), ("steer", then.steering.is_some())];
             let needless = needs_parts.into_iter().filter(|(_, is_given)| *is_given && parts.is_empty());
             faults.extend(needless.map(|(field, _)| {
-                Fault::new(format!("{place}/{field}"), "requires vehicle.parts: it acts on their engines")
+                Fault::new(format!("{place}/{field}"), "requires vehicle.parts: it acts on the engines of parts")
             }));
         }
         faults
@@ -585,22 +586,40 @@ impl Event {
         self.then.core.thrust.is_some()
     }
 
-    /// Whether it pushes the vehicle along a direction that stays in inertial space.
-    fn is_inertial(&self) -> bool {
+    /// Whether it pushes or steers the vehicle, or what leaves it, along a direction that stays in inertial space.
+    pub(super) fn is_inertial(&self) -> bool {
         let is_inertial = |axis: ThrustAxis| matches!(axis, ThrustAxis::Inertial(_));
         let CoreEffect { impulse, thrust, .. } = &self.then.core;
-        let pushes = self.then.separated.iter().filter_map(|separation| separation.push);
-        let steers = self.then.steering.as_ref().is_some_and(Steering::is_inertial);
-        steers
-            || impulse.iter().copied().chain(pushes).any(|impulse| is_inertial(impulse.along))
+        self.then.steering.as_ref().is_some_and(Steering::is_inertial)
+            || self.then.separated.iter().any(Separation::is_inertial)
+            || impulse.is_some_and(|impulse| is_inertial(impulse.along))
             || matches!(thrust, Some(ThrustCommand::On(thrust)) if is_inertial(thrust.along))
     }
 
+    /// How many bodies events separate, with those that separate from bodies.
+    pub(super) fn count_of_bodies(events: &[Self]) -> usize {
+        events.iter().flat_map(|event| &event.then.separated).map(Separation::count).sum()
+    }
+
+    /// More bodies than a case may have: none of them needs to be looked at.
+    pub(super) fn body_faults(events: &[Self]) -> Vec<Fault> {
+        let last = events.iter().rposition(|event| !event.then.separated.is_empty());
+        let last = last.filter(|_| Self::count_of_bodies(events) > MOST_BODIES);
+        let fault = |index: usize| {
+            let detail = format!(
+                "must separate at most {MOST_BODIES} bodies in all, with those that separate from bodies, got {}",
+                Self::count_of_bodies(events)
+            );
+            Fault::new(format!("/events/{index}/then/separate"), detail)
+        };
+        last.map(fault).into_iter().collect()
+    }
+
     /// Inertial directions on a planet whose angle nobody knows: an epoch says nothing about it, and the state does not give it.
-    pub(super) fn frame_faults(events: &[Self], is_angle_known: bool) -> Vec<Fault> {
-        let detail = "is required for the inertial direction of an event: an epoch does not define the angle of a \
-                      custom planet; give sidereal_time or sidereal_angle";
-        let unknown = !is_angle_known && events.iter().any(Self::is_inertial);
+    pub(super) fn frame_faults(events: &[Self], control: &ControlRequest, is_angle_known: bool) -> Vec<Fault> {
+        let detail = "is required for an inertial direction of an event or of the steering: an epoch does not define \
+                      the angle of a custom planet; give sidereal_time or sidereal_angle";
+        let unknown = !is_angle_known && (control.is_inertial() || events.iter().any(Self::is_inertial));
         unknown.then(|| Fault::new("/initial_state/sidereal_time", detail)).into_iter().collect()
     }
 

@@ -16,6 +16,9 @@ use super::vehicle::aerodynamics;
 /// The greatest number of parts of a vehicle.
 pub const MOST_PARTS: usize = 100;
 
+/// Names that a fault lists.
+const MOST_NAMED: usize = 10;
+
 /// The greatest count of one part.
 const MOST_OF_A_KIND: usize = 1000;
 
@@ -92,11 +95,20 @@ pub(super) fn part(object: &mut Object) -> Option<NamedPart> {
         .unit("m")
         .optional()
         .number(Bound::POSITIVE);
+    if let (Some(count), Some(area)) = (count, reference_area)
+        && !(area * count_of(count)).is_finite()
+    {
+        object.fault_of("reference_area", "must be finite when multiplied by count");
+    }
     let (engine, gives_sea_level) = engine.unzip();
     let count = u32::try_from(count?).ok()?;
     let core = Part { count, dry_mass: dry_mass?, propellant: propellant?, engine };
     let gives_sea_level = gives_sea_level.unwrap_or(false);
     Some(NamedPart { name: name?, core, reference_area, aerodynamics, nose_radius, gives_sea_level })
+}
+
+fn count_of(count: usize) -> f64 {
+    u32::try_from(count).map_or(f64::INFINITY, f64::from)
 }
 
 /// An engine, and whether the thrust at sea level gives its exit area.
@@ -206,7 +218,7 @@ fn thrust(object: &mut Object) -> Option<(ThrustProfile, Option<f64>)> {
                 object.fault_of("time/0", format!("must be 0, the ignition, got {first}"));
             }
             let entries = time.into_iter().zip(vacuum).map(|(time, thrust)| ThrustEntry { time, thrust });
-            sound.then(|| (ThrustProfile::Table(entries.collect()), None))
+            sound.then(|| (ThrustProfile::Table(entries.collect::<Vec<_>>().into()), None))
         }
         (NumberOrList::List(_), None) => None,
     }
@@ -238,8 +250,15 @@ impl NamedPart {
             return None;
         }
         let what = if with_engine { "a part with an engine" } else { "a part" };
-        let names: Vec<_> = parts.iter().filter(fits).map(|part| quoted(&part.name)).collect();
-        let names = if names.is_empty() { "there is none".to_owned() } else { names.join(", ") };
+        let mut names: Vec<_> = parts.iter().filter(fits).map(|part| quoted(&part.name)).collect();
+        names.dedup();
+        let more = names.len().saturating_sub(MOST_NAMED);
+        names.truncate(MOST_NAMED);
+        let names = match more {
+            0 if names.is_empty() => "there is none".to_owned(),
+            0 => names.join(", "),
+            more => format!("{} and {more} more", names.join(", ")),
+        };
         let got = quoted(name);
         Some(Fault::new(pointer, format!("must be the name of {what} ({names}), got {got}")))
     }

@@ -1,6 +1,7 @@
 //! The request of `/simulate`: its parts, stop, output and solver.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::f64::consts::FRAC_PI_2;
 
 use reentry::coordinates::{FlightPath, PlanetFixed, horizon, launch_horizon};
@@ -10,9 +11,9 @@ use reentry::vehicle::Vehicle;
 use serde_json::{Value, json};
 
 use super::atmosphere::{Atmosphere, atmosphere};
-use super::columns::{AvailableQuantities, COLUMNS, Column};
+use super::columns::{AskedColumn, AvailableQuantities, COLUMNS, PROPELLANT};
 use super::control::{ControlRequest, control};
-use super::description::{self, Object, Words, word};
+use super::description::{self, NameOr, Object, Words, word};
 use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
 use super::events::{Condition, Event, EventReferences, MOST_EVENTS, condition, event};
@@ -26,7 +27,7 @@ use super::sensitivities::{RequestedSensitivities, asked};
 use super::separation::Separation;
 use super::shown::shown;
 use super::state::{State, inertial_conditions, initial_state};
-use super::steering::Axes;
+use super::steering::{Axes, Steering};
 use super::vehicle::vehicle;
 use super::wind::{Wind, wind};
 use super::{ANGLE_UNITS, AngleUnit};
@@ -78,8 +79,35 @@ pub struct Output {
     /// The instants that are asked for, if any, with the pointer to the field that asks for them.
     pub sampling: Option<(Sampling, &'static str)>,
     /// The columns that are asked for; none where all that the case has are.
-    pub columns: Option<Vec<&'static Column>>,
+    pub columns: Option<Vec<AskedColumn>>,
+    /// What is asked of the bodies that leave the vehicle.
+    pub bodies: OutputOfBodies,
 }
+
+/// What the answer has of the bodies that leave the vehicle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OutputOfBodies {
+    /// What it has of the vehicle.
+    #[default]
+    Full,
+    /// The same without rows.
+    Ends,
+    /// Nothing: they are not flown.
+    None,
+}
+
+/// The words for what the answer has of bodies.
+const OUTPUTS_OF_BODIES: Words<OutputOfBodies> = Words {
+    name: "OutputOfBodies",
+    doc: "Output for the bodies that leave the vehicle.",
+    words: &[
+        word("full", OutputOfBodies::Full, "With trajectories")
+            .doc("Their flights, with the rows of their trajectories."),
+        word("ends", OutputOfBodies::Ends, "Without trajectories")
+            .doc("Their flights without trajectories. CSV omits them, maps have their points without a track."),
+        word("none", OutputOfBodies::None, "None").doc("They are not flown."),
+    ],
+};
 
 /// The words for the equations to integrate.
 pub const FORMULATIONS: Words<Equations> = Words {
@@ -216,11 +244,14 @@ pub(super) fn case(object: &mut Object) -> Option<SimulateRequest> {
         .object(|object| initial_state(object, has_epoch));
     inertial_conditions(object, "initial_state");
     let stop = object.field("stop", "Stop").doc("Conditions that end the flight.").default(json!({})).object(stop);
+    let of_parts = vehicle.iter().flat_map(|(_, parts)| parts).map(|part| part.name.clone());
+    let parts: Vec<_> = of_parts.collect();
+    let separates = events.iter().flatten().any(|event| !event.then.separated.is_empty());
     let output = object
         .field("output", "Output rows")
         .doc("Rows and columns of the trajectory.")
         .default(json!({"samples_per_step": 4}))
-        .object(output);
+        .object(|object| output(object, &parts, separates));
     let solver = object
         .field("solver", "Solver")
         .doc("Formulation and tolerance of the numerical integration.")
@@ -380,15 +411,17 @@ pub(super) fn conditions(object: &mut Object) -> Option<Vec<Condition>> {
 /// The fields of which one says which rows there are.
 const WAYS: [&str; 5] = ["samples_per_step", "interval", "count", "times", "trajectory"];
 
-fn output(object: &mut Object) -> Option<Output> {
+/// Rows and columns, in a case whose vehicle has parts of these names, and of which bodies may leave.
+fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Output> {
     object.named(
         "Output",
         "Rows and columns of the trajectory. Exactly one of `samples_per_step`, `interval`, `count`, `times` and \
-         `trajectory` must be given; if only `columns` is given, `samples_per_step` is 4. The rows at the start and \
-         at the end are always included.",
+         `trajectory` must be given; if only `columns` or `bodies` is given, `samples_per_step` is 4. The rows at the \
+         start and at the end are always included. Of every body that leaves the vehicle there are the same rows and \
+         columns, as far as it has them.",
     );
     let has_columns = object.has("columns");
-    if has_columns && !WAYS.iter().any(|way| object.has(way)) {
+    if (has_columns || object.has("bodies")) && !WAYS.iter().any(|way| object.has(way)) {
         object.fill("samples_per_step", json!(4));
     }
     let per_step = object
@@ -425,34 +458,48 @@ fn output(object: &mut Object) -> Option<Output> {
                 other => Err(format!("must be false or absent, got {}", shown(other))),
             },
         );
-    let names = COLUMNS.each_ref().map(|column| column.name);
     let columns = object
         .field("columns", "Columns")
         .doc(
             "Columns of the trajectory, in this order. Without it, the trajectory has all columns of the case except \
-             those of the osculating orbit and `thrust`. Not supported with `\"trajectory\": false` and for \
+             those of the osculating orbit, `energy` and, unless the vehicle has parts, `thrust`. `propellant.NAME` is \
+             the propellant that is left in the part of the name. Not supported with `\"trajectory\": false` and for \
              `/analytic`, whose columns are fixed; OEM and map formats ignore it.",
         )
         .optional()
-        .names(&names);
+        .names_or(&COLUMNS.each_ref().map(|column| column.name), PROPELLANT, parts);
+    if separates {
+        object.fill("bodies", json!("full"));
+    }
+    let bodies = object
+        .field("bodies", "Bodies that leave")
+        .doc("Output for the bodies that leave the vehicle, and those that leave them; by default `full`.")
+        .optional()
+        .word(&OUTPUTS_OF_BODIES);
     let no_trajectory = object.has("trajectory");
     if has_columns && no_trajectory {
         object.fault_of("columns", "must not be given together with \"trajectory\": false");
     }
     object.condition(|| {
-        // Columns alone are of four rows a step.
-        let ways = WAYS.map(|way| json!({"required": [way]}));
-        json!({"if": {"anyOf": ways}, "then": {"oneOf": ways}, "else": {"required": ["columns"]}})
+        // Without a way there are four rows a step.
+        let required = |name| json!({"required": [name]});
+        let (ways, others) = (WAYS.map(required), ["columns", "bodies"].map(required));
+        json!({"if": {"anyOf": ways}, "then": {"oneOf": ways}, "else": {"anyOf": others}})
     });
     object.condition(|| json!({"dependentSchemas": {"trajectory": {"not": {"required": ["columns"]}}}}));
     object.one_given(&WAYS)?;
+    let asked = |column| match column {
+        NameOr::Name(index) => AskedColumn::Listed(&COLUMNS[index]),
+        NameOr::Other(part) => AskedColumn::Propellant(part),
+    };
     let per_step = per_step.map(|rows| (Sampling::PerStep(rows), "/output/samples_per_step"));
     let interval = interval.map(|interval| (Sampling::Interval(interval), "/output/interval"));
     let count = count.map(|count| (Sampling::Count(count), "/output/count"));
     let times = times.map(|times| (Sampling::Times(times), "/output/times"));
     Some(Output {
         sampling: per_step.or(interval).or(count).or(times),
-        columns: columns.map(|columns| columns.into_iter().map(|index| &COLUMNS[index]).collect()),
+        columns: columns.map(|columns| columns.into_iter().map(asked).collect()),
+        bodies: bodies.unwrap_or_default(),
     })
 }
 
@@ -520,6 +567,7 @@ impl SimulateRequest {
         let known = self.known();
         let columns = self.output.columns.iter().flatten().enumerate();
         let missing = columns.filter_map(|(index, column)| {
+            let AskedColumn::Listed(column) = column else { return None };
             let missing = column.missing(known)?;
             Some(Fault::new(format!("/output/columns/{index}"), format!("{} requires {missing}", column.name)))
         });
@@ -537,6 +585,7 @@ impl SimulateRequest {
             heating: self.heating.is_some(),
             changing_mass: !self.parts.is_empty() || self.events.iter().any(Event::changes_mass),
             thrust: !self.parts.is_empty() || self.events.iter().any(Event::changes_thrust),
+            parts: !self.parts.is_empty(),
             planet: self.planet.core,
             is_on_earth: self.planet.is_earth(),
             sidereal_angle: self.initial_state.sidereal_angle(self.epoch, self.angle_unit, &self.planet),
@@ -548,8 +597,14 @@ impl SimulateRequest {
         let initial_state = self.initial_state.at(self.epoch, "/initial_state", self.angle_unit, &self.planet);
         let is_angle_known = self.initial_state.gives_sidereal()
             || self.epoch.is_none_or(|epoch| self.planet.rotation_angle(epoch).is_some());
+        let too_many = Event::body_faults(&self.events);
+        if !too_many.is_empty() {
+            return Err(too_many);
+        }
         let vehicle = self.vehicle_flown();
-        let mut across = vehicle.faults(is_angle_known);
+        let mut across = vehicle.faults();
+        across.extend(Event::frame_faults(&self.events, &self.control, is_angle_known));
+        across.extend(Separation::name_faults(&self.events, "", &mut HashSet::new()));
         if self.initial_state.is_held() {
             across.extend(Event::lift_off_faults(&self.events));
         }
@@ -574,7 +629,11 @@ impl SimulateRequest {
             Err(error) => {
                 // A name of no event or part is among the faults, with the name.
                 let of_core = error.0.iter().filter(|fault| !is_of_name(fault));
-                Err(of_core.map(|it| self.fault_of_part(it).unwrap_or_else(|| fault(it))).chain(across).collect())
+                let mut faults: Vec<_> = of_core.map(|it| vehicle.located(it, &self.parts)).chain(across).collect();
+                // What is wrong with a part is wrong with every body that has it.
+                let mut known = HashSet::new();
+                faults.retain(|Fault { pointer, detail }| known.insert((pointer.clone(), detail.clone())));
+                Err(faults)
             }
         }
     }
@@ -583,6 +642,8 @@ impl SimulateRequest {
     fn vehicle_flown(&self) -> Flown<'_> {
         Flown {
             vehicle: Some(self.vehicle.clone()),
+            separation: None,
+            place: String::new(),
             parts: Cow::Borrowed(&self.parts),
             control: &self.control,
             events: &self.events,
@@ -600,7 +661,7 @@ impl SimulateRequest {
         for event in *events {
             core_events.push(event.to_core(events, &references, bodies.len()));
             for separation in &event.then.separated {
-                let body = flown.body(separation, "");
+                let body = flown.body(separation, String::new());
                 bodies.push(BodyCase { case: self.case_of(&body, frames), stop_time: body.stop_time });
             }
         }
@@ -629,13 +690,6 @@ impl SimulateRequest {
         }
     }
 
-    /// A fault of the exit area of a part, which the thrust at sea level may define.
-    fn fault_of_part(&self, fault: &scenario::Fault) -> Option<Fault> {
-        let scenario::Fault::NoPressure { field } = fault else { return None };
-        let index: usize = field.split('.').nth(2)?.parse().ok()?;
-        let pointer = self.parts.get(index)?.exit_area_pointer();
-        Some(Fault::new(format!("/vehicle/parts/{index}/{pointer}"), fault.to_string()))
-    }
 }
 
 /// Whether a fault is that of a name, of which the request has one with the name itself.
@@ -656,6 +710,10 @@ fn is_of_name(fault: &scenario::Fault) -> bool {
 struct Flown<'a> {
     /// None of a body whose aerodynamics are not known.
     vehicle: Option<Vehicle>,
+    /// That of a body.
+    separation: Option<&'a Separation>,
+    /// The pointer to it, if it is a body.
+    place: String,
     parts: Cow<'a, [NamedPart]>,
     control: &'a ControlRequest,
     events: &'a [Event],
@@ -666,17 +724,19 @@ struct Flown<'a> {
     stop_when: &'a [Condition],
 }
 
-impl Flown<'_> {
+impl<'a> Flown<'a> {
     /// Whether it is the vehicle itself.
     fn is_whole(&self) -> bool {
-        matches!(self.parts, Cow::Borrowed(_))
+        self.separation.is_none()
     }
 
     /// The body of a separation; `pointer` is that of the separation.
-    fn body<'b>(&self, separation: &'b Separation, pointer: &str) -> Flown<'b> {
+    fn body(&self, separation: &'a Separation, pointer: String) -> Self {
         let parts = separation.parts_of(&self.parts);
         Flown {
-            vehicle: separation.vehicle(&parts, pointer).ok(),
+            vehicle: separation.vehicle(&parts, &pointer).ok(),
+            separation: Some(separation),
+            place: pointer,
             parts: Cow::Owned(parts),
             control: &separation.control,
             events: &separation.events,
@@ -686,15 +746,61 @@ impl Flown<'_> {
         }
     }
 
+    /// A fault that the core found, at the field of the request that it concerns; `parts` are those of the request.
+    fn located(&self, of_core: &scenario::Fault, parts: &[NamedPart]) -> Fault {
+        let Fault { pointer, detail } = fault(of_core);
+        let names: Vec<_> = pointer.split('/').skip(1).collect();
+        let index = |at: usize| names.get(at).and_then(|index| index.parse::<usize>().ok());
+        let place = match (of_core, &names[..]) {
+            (scenario::Fault::OfBody { fault, .. }, _) => {
+                let separation = index(1).zip(index(4)).and_then(|(event, place)| {
+                    self.events.get(event).and_then(|event| event.then.separated.get(place))
+                });
+                let of_body = separation.map(|separation| {
+                    let place = format!("{}/{}", self.place, names[..5].join("/"));
+                    self.body(separation, place).located(fault, parts)
+                });
+                return of_body.unwrap_or(Fault { pointer, detail });
+            }
+            (scenario::Fault::NoPressure { .. }, _) => {
+                let exit_area = index(2).and_then(|index| parts.get(index)).map(NamedPart::exit_area_pointer);
+                exit_area.map(|exit_area| format!("/{}/{exit_area}", names[..3].join("/")))
+            }
+            (_, ["vehicle", rest @ ..]) => self.separation.map(|separation| self.of_body(separation, rest, parts)),
+            (_, ["control", "steering", angle, rest @ ..]) => {
+                let angle = self.control.steering.as_ref().map(|steering| angle_of(steering, angle));
+                angle.map(|angle| format!("/control/steering/{angle}/{}", rest.join("/")))
+            }
+            (_, ["events", event, "then", "steer", angle, rest @ ..]) => {
+                let steering = index(1).and_then(|event| self.events.get(event)?.then.steering.as_ref());
+                let angle = steering.map(|steering| angle_of(steering, angle));
+                angle.map(|angle| format!("/events/{event}/then/steer/{angle}/{}", rest.join("/")))
+            }
+            _ => None,
+        };
+        let is_of_part = place.as_ref().is_some_and(|place| place.starts_with("/vehicle/parts/"));
+        let of_flown = place.unwrap_or(pointer);
+        Fault::new(if is_of_part { of_flown } else { format!("{}{of_flown}", self.place) }, detail)
+    }
+
+    /// The pointer to a field of the vehicle that a body is: that of the separation, or that of its single part.
+    fn of_body(&self, separation: &Separation, field: &[&str], parts: &[NamedPart]) -> String {
+        let field = field.join("/");
+        let only = if let [only] = &self.parts[..] { NamedPart::place_of(&only.name, parts) } else { None };
+        match only.filter(|_| !separation.gives_aerodynamics()) {
+            Some(part) => format!("/vehicle/parts/{part}/{field}"),
+            None => format!("/{field}"),
+        }
+    }
+
     /// What is wrong across its fields, and across those of the bodies that leave it.
-    fn faults(&self, is_angle_known: bool) -> Vec<Fault> {
+    fn faults(&self) -> Vec<Fault> {
         let Self { events, control, parts, .. } = self;
         let mut faults = match &self.vehicle {
             Some(vehicle) => Event::area_faults(events, vehicle),
             None => Vec::new(),
         };
         faults.extend(Event::parachute_faults(events));
-        faults.extend(Event::frame_faults(events, is_angle_known));
         faults.extend(Event::part_faults(events, parts));
         if self.is_whole() {
             faults.extend(NamedPart::faults(parts, "/vehicle/parts"));
@@ -702,7 +808,7 @@ impl Flown<'_> {
         faults.extend(self.name_faults());
         if let Some(steering) = &control.steering {
             if parts.is_empty() {
-                let detail = "requires vehicle.parts: it points their engines";
+                let detail = "requires vehicle.parts: it points the engines of parts";
                 faults.push(Fault::new("/control/steering", detail));
             }
             let by_axis = steering.is_attitude() && control.angle_of_attack.is_given();
@@ -712,9 +818,10 @@ impl Flown<'_> {
         for (index, event) in events.iter().enumerate() {
             for (place, separation) in event.then.separated.iter().enumerate() {
                 let pointer = format!("/events/{index}/then/separate/{place}");
-                let missing = separation.vehicle(&separation.parts_of(parts), &pointer).err();
-                faults.extend(missing.into_iter().flatten());
-                let of_body = self.body(separation, &pointer).faults(is_angle_known);
+                // Whether names of no parts are all that is missing is not known.
+                let missing = separation.is_of(parts).then(|| separation.vehicle(&separation.parts_of(parts), &pointer));
+                faults.extend(missing.and_then(Result::err).into_iter().flatten());
+                let of_body = self.body(separation, pointer.clone()).faults();
                 faults.extend(
                     of_body
                         .into_iter()
@@ -737,6 +844,12 @@ impl Flown<'_> {
         });
         conditions.chain(self.control.name_faults(self.events)).chain(steers.flatten()).collect()
     }
+}
+
+/// The name of an angle of a steering, which the core calls `pitch` or `yaw`.
+fn angle_of(steering: &Steering, of_core: &str) -> &'static str {
+    let [pitch, yaw] = steering.angles();
+    if of_core == "pitch" { pitch } else { yaw }
 }
 
 /// From where and how a flight starts, for all that fly.

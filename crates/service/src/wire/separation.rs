@@ -1,6 +1,8 @@
 //! What leaves the vehicle of a request, and how it flies on.
 
-use reentry::propulsion::Impulse;
+use std::collections::HashSet;
+
+use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{Bound, Stop};
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
@@ -11,6 +13,7 @@ use super::events::{Condition, Event, MOST_EVENTS, event, impulse};
 use super::parts::{MOST_PARTS, NamedPart};
 use super::reader::Fault;
 use super::scenario::conditions;
+use super::shown::quoted;
 use super::vehicle::aerodynamics;
 
 /// A body that leaves a vehicle.
@@ -54,7 +57,10 @@ pub(super) fn separation(object: &mut Object) -> Option<Separation> {
         "Body that leaves the vehicle: parts with the propellant that is left, their engines off. It flies on in the \
          planet, air and wind of the case, on the same clock; the vehicle keeps its velocity.",
     );
-    let name = object.field("name", "Name").doc("Name of the body in the response.").text();
+    let name = object
+        .field("name", "Name")
+        .doc("Name of the body in the response. It must be unique among all bodies of the case.")
+        .text();
     let parts = object.field("parts", "Parts").doc("Names of the parts that leave; at least one.").texts(MOST_PARTS);
     object.refine("parts", || json!({"minItems": 1}));
     if parts.as_ref().is_some_and(Vec::is_empty) {
@@ -120,10 +126,49 @@ fn stop(object: &mut Object) -> Option<BodyStop> {
 }
 
 impl Separation {
+    /// Names that several bodies have, of those that leave in events or leave others; `pointer` is that of what they leave.
+    pub(super) fn name_faults<'a>(events: &'a [Event], pointer: &str, names: &mut HashSet<&'a str>) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for (index, event) in events.iter().enumerate() {
+            for (place, Self { name, events, .. }) in event.then.separated.iter().enumerate() {
+                let pointer = format!("{pointer}/events/{index}/then/separate/{place}");
+                if !names.insert(name) {
+                    let detail = format!("must be unique among the bodies of the case, got {} again", quoted(name));
+                    faults.push(Fault::new(format!("{pointer}/name"), detail));
+                }
+                faults.extend(Self::name_faults(events, &pointer, names));
+            }
+        }
+        faults
+    }
+
     /// Its parts among those of the vehicle.
     pub(super) fn parts_of(&self, parts: &[NamedPart]) -> Vec<NamedPart> {
         let part = |name: &String| NamedPart::place_of(name, parts).map(|place| parts[place].clone());
         self.parts.iter().filter_map(part).collect()
+    }
+
+    /// Whether each of its names is that of one part, and of another than the others.
+    pub(super) fn is_of(&self, parts: &[NamedPart]) -> bool {
+        let is_known = |name: &String| NamedPart::place_of(name, parts).is_some();
+        let is_new = |(index, name): (usize, &String)| !self.parts[..index].contains(name);
+        self.parts.iter().all(is_known) && self.parts.iter().enumerate().all(is_new)
+    }
+
+    /// Whether it gives aerodynamics.
+    pub(super) fn gives_aerodynamics(&self) -> bool {
+        self.aerodynamics.is_some()
+    }
+
+    /// Whether a push on it, an event of it or its steering has a direction that stays in inertial space.
+    pub(super) fn is_inertial(&self) -> bool {
+        let is_pushed = self.push.is_some_and(|push| matches!(push.along, ThrustAxis::Inertial(_)));
+        is_pushed || self.control.is_inertial() || self.events.iter().any(Event::is_inertial)
+    }
+
+    /// How many bodies it makes, with those that separate from it.
+    pub(super) fn count(&self) -> usize {
+        1 + Event::count_of_bodies(&self.events)
     }
 
     /// The body, of these parts; `pointer` is that of the separation.
@@ -138,7 +183,10 @@ impl Separation {
         let of_part = only.and_then(|part| Some(f64::from(part.core.count) * part.reference_area?));
         let reference_area = self.reference_area.or(of_part).or(is_ballistic.then_some(1.0));
         let missing = |field: &str| {
-            let detail = "is required: the body has not a single part that defines it";
+            let detail = match only {
+                Some(part) => format!("is required: part {} has none", quoted(&part.name)),
+                None => "is required for a body of several parts".to_owned(),
+            };
             Fault::new(format!("{pointer}/{field}"), detail)
         };
         let mass = parts.iter().map(|part| part.core.mass()).sum();

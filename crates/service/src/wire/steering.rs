@@ -161,15 +161,19 @@ impl Steering {
         }
     }
 
+    /// The names of the angle above a plane and of that in the plane.
+    pub(super) fn angles(&self) -> [&'static str; 2] {
+        match self {
+            Self::Program(Frame::Local, _) => ["pitch", "azimuth"],
+            Self::Program(Frame::Inertial, _) => ["declination", "right_ascension"],
+            _ => ["pitch", "yaw"],
+        }
+    }
+
     /// Names of events that are not those of one event alone; `pointer` is that of the steering.
     pub(super) fn name_faults(&self, pointer: &str, events: &[Event]) -> Vec<Fault> {
-        let Self::Program(frame, commands) = self else { return Vec::new() };
-        let fields = match frame {
-            Frame::Launch => ["pitch", "yaw"],
-            Frame::Local => ["pitch", "azimuth"],
-            Frame::Inertial => ["declination", "right_ascension"],
-        };
-        let faults = fields.into_iter().zip(commands.iter());
+        let Self::Program(_, commands) = self else { return Vec::new() };
+        let faults = self.angles().into_iter().zip(commands.iter());
         faults.filter_map(|(field, command)| command.name_fault(format!("{pointer}/{field}"), events)).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! A flight on a map: the places of its rows, and what is marked beside them, as `GeoJSON`, KML and CZML.
+//! Flights on a map: the places of their rows, and what is marked beside them, as `GeoJSON`, KML and CZML.
 //!
 //! Longitudes and latitudes are in degrees, whatever the unit of the request; latitudes and altitudes are geodetic, as the formats ask
 //! for. They are those of the case's planet: on a map of the Earth they lie where the map has these numbers.
@@ -9,22 +9,33 @@ mod kml;
 
 use std::iter;
 
+use reentry::simulate::Flights;
 use reentry::trajectory::{EventPoint, FlightPoint, Trajectory};
 use serde::Serialize;
 use serde_json::json;
 
-use super::columns::Columns;
 use super::epoch::{Epoch, Utc};
 use super::planet::{Planet, PlanetModel};
 use super::reader::Fault;
-use super::trajectory::{Peak, SimulateResponse};
+use super::trajectory::{FlightOfAnswer, Peak, SimulateResponse};
 
-/// A flight, ready to be drawn.
+/// The flights of an answer, ready to be drawn.
 #[derive(Clone, Debug)]
 pub struct Track<'a> {
     answer: &'a SimulateResponse,
     epoch: Option<Epoch>,
-    vertices: Vec<Vertex>,
+    /// That of the vehicle first.
+    tracks: Vec<BodyTrack<'a>>,
+}
+
+/// The flight of the vehicle or of a body.
+#[derive(Clone, Debug)]
+struct BodyTrack<'a> {
+    /// The name of the body or, of the vehicle, that of the case.
+    name: &'a str,
+    told: FlightOfAnswer<'a>,
+    /// One a row; none where the answer has no rows of the body.
+    vertices: Option<Vec<Vertex>>,
     points: Vec<NamedPoint>,
 }
 
@@ -44,6 +55,9 @@ struct Vertex {
 /// What is marked beside the track, and what a user sees of it.
 #[derive(Clone, Debug, Serialize)]
 struct NamedPoint {
+    /// None of the vehicle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    body: Option<String>,
     name: String,
     kind: &'static str,
     quantity: &'static str,
@@ -59,17 +73,25 @@ struct NamedPoint {
 }
 
 impl<'a> Track<'a> {
-    /// The track of a flight, with a vertex a row.
+    /// The tracks of all flights, with a vertex a row.
     ///
     /// # Errors
-    /// When the flight goes on after the last year that can be written.
-    pub fn new(answer: &'a SimulateResponse, rows: &Columns, flight: &Trajectory) -> Result<Self, Fault> {
-        let epoch = rows.epoch();
-        if epoch.is_some_and(|epoch| epoch.utc(flight.end_time()).is_none()) {
+    /// When a flight goes on after the last year that can be written.
+    pub fn new(answer: &'a SimulateResponse, flights: &Flights, epoch: Option<Epoch>) -> Result<Self, Fault> {
+        let is_beyond = |epoch: Epoch| flights.all().any(|flight| epoch.utc(flight.end_time()).is_none());
+        if epoch.is_some_and(is_beyond) {
             return Err(Fault::new("/epoch", "must let the flight end before the year 10000 for map formats"));
         }
-        let vertices = rows.points().iter().map(Vertex::of).collect();
-        Ok(Self { answer, epoch, vertices, points: marked(answer, flight, epoch) })
+        let track = |(told, flight): (FlightOfAnswer<'a>, &Trajectory)| {
+            let rows = told.report.trajectory.as_ref();
+            BodyTrack {
+                name: told.body.unwrap_or_else(|| name(answer)),
+                told,
+                vertices: rows.map(|rows| rows.points().iter().map(Vertex::of).collect()),
+                points: marked(&told, flight, epoch),
+            }
+        };
+        Ok(Self { answer, epoch, tracks: answer.flights().zip(flights.all()).map(track).collect() })
     }
 
     /// Why viewers of KML would place flights on the planet on another globe; none where they do not.
@@ -95,27 +117,31 @@ impl<'a> Track<'a> {
         Some(Fault::new("/planet/model", detail))
     }
 
-    /// The name of the flight.
-    fn name(&self) -> &str {
-        self.answer.name.as_deref().unwrap_or("flight")
-    }
-
     /// The instant of a time, with an epoch.
     fn utc(&self, time: f64) -> Option<Utc> {
         self.epoch.and_then(|epoch| epoch.utc(time))
     }
+}
 
+/// The name of the flight of the vehicle.
+fn name(answer: &SimulateResponse) -> &str {
+    answer.name.as_deref().unwrap_or("flight")
+}
+
+impl BodyTrack<'_> {
     /// How the flight ended and what it warns of, for people.
     fn notes(&self) -> String {
         let end = self.points.first().map(|end| format!("{}: {}", end.name, end.description()));
-        let warnings = self.answer.warnings.iter().map(|warning| warning.detail.clone());
+        let warnings = self.told.warnings.iter().map(|warning| warning.detail.clone());
         end.into_iter().chain(warnings).collect::<Vec<_>>().join("; ")
     }
 }
 
 /// Everything that is marked: the end, the peaks, and the events.
-fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Epoch>) -> Vec<NamedPoint> {
+fn marked(told: &FlightOfAnswer, flight: &Trajectory, epoch: Option<Epoch>) -> Vec<NamedPoint> {
+    let FlightOfAnswer { body, report, .. } = told;
     let point = |kind, name, (quantity, value, unit), point: &FlightPoint| NamedPoint {
+        body: body.map(str::to_owned),
         name,
         kind,
         quantity,
@@ -128,9 +154,9 @@ fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Epoch>) 
     };
     let speed = |point: &FlightPoint| ("speed", point.flight_path.speed, "m/s");
     let last = flight.last();
-    let termination = json!(answer.termination);
+    let termination = json!(report.termination);
     let end = point("end", words(termination.as_str().unwrap_or_default()), speed(&last), &last);
-    let peaks = &answer.peaks;
+    let peaks = &report.peaks;
     let peaks = [
         ("deceleration", "m/s²", Some(peaks.deceleration)),
         ("load_factor", "g", Some(peaks.load_factor)),
@@ -148,7 +174,7 @@ fn marked(answer: &SimulateResponse, flight: &Trajectory, epoch: Option<Epoch>) 
         let Peak { value, time, .. } = peak?;
         Some(point("peak", format!("peak {}", words(quantity)), (quantity, value, unit), &flight.at(time)))
     });
-    let names = answer.events.iter().flatten();
+    let names = report.events.iter().flatten();
     let events = names.zip(flight.events()).map(|(report, EventPoint { before, .. })| {
         let name = report.name.clone().unwrap_or_else(|| format!("event {}", report.index));
         point("event", name, speed(&before), &before)

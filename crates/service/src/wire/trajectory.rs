@@ -1,20 +1,25 @@
 //! The answer of `/simulate`.
 
+use std::io::Write;
+use std::iter;
+
 use reentry::atmosphere::nrlmsise00::{Ap, SpaceWeather};
+use reentry::integrate::Statistics;
 use reentry::simulate::SimulationError;
 use reentry::trajectory::{
     self, EventPoint, FlightPhase, FlightPoint, HeatingPeaks, Peaks as CorePeaks, PhaseStart,
-    Termination as CoreTermination, Trajectory,
+    Termination as CoreTermination,
 };
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::AngleUnit;
-use super::columns::{Columns, Row};
+use super::bodies::{DescribedBody, FlownBodies, FlownBody, FlownSeparation};
+use super::columns::{Columns, Row, csv_text};
 use super::dispersions::Covariance;
 use super::planet::MODELS;
-use super::scenario::{FORMULATIONS, FlightRequest};
+use super::scenario::{FORMULATIONS, SimulateRequest};
 use super::schema::names;
 use super::sensitivities::SensitivitiesAnswer;
 use super::vehicle;
@@ -192,14 +197,22 @@ pub struct SolverReport {
     pub formulation: &'static str,
     /// Permitted error per step, relative to the planet's radius and circular speed.
     pub relative_tolerance: f64,
+    /// Of the flight of the vehicle.
+    #[serde(flatten)]
+    pub counts: IntegrationCounts,
+    /// Computing time of integration, events and peaks, of all bodies together, s.
+    pub elapsed: f64,
+}
+
+/// Statistics of the numerical integration of a flight.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct IntegrationCounts {
     /// Number of accepted steps.
     pub steps: usize,
     /// Number of rejected steps, which missed the tolerance.
     pub rejected_steps: usize,
     /// Number of evaluations of the equations of motion.
     pub evaluations: usize,
-    /// Computing time of integration, events and peaks, s.
-    pub elapsed: f64,
 }
 
 /// What a request may ask for beyond the flight.
@@ -213,6 +226,69 @@ pub struct RequestedAnalyses {
     pub verification: Option<Verification>,
     /// Why the finer flight of the verification could not be finished.
     pub unverified: Option<SimulationError>,
+    /// With `echo`.
+    pub echo: Option<Value>,
+}
+
+/// Flight of the vehicle, or of a body that left it.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct FlightReport {
+    /// How the flight ended.
+    pub termination: Termination,
+    /// Index in `stop.when` of the condition that ended the flight, from 0; present if a condition ended it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub condition: Option<usize>,
+    /// State at the start as given, before the events at that instant: at t = 0 or, of a body, at its separation.
+    pub initial_state: Row,
+    /// State at the end, after the events at that instant.
+    pub final_state: Row,
+    /// Events that happened, in order; present if the request has events.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub events: Option<Vec<EventReport>>,
+    /// Greatest values over the flight.
+    pub peaks: Peaks,
+    /// Parts of the flight between events that change the vehicle (mass, area, coefficients or thrust); present if
+    /// there is more than one. The greatest of their peaks are `peaks`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub phases: Option<Vec<PhaseReport>>,
+    /// Rows of the trajectory; absent with `"output": {"trajectory": false}` and, of a body, with `"bodies": "ends"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub trajectory: Option<Columns>,
+}
+
+/// Flight of a body that left the vehicle or another body. Its times are on the clock of the case: since t = 0.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct BodyReport {
+    /// Name of the body in the request.
+    pub name: String,
+    /// Name of the body that it left; null if it left the vehicle.
+    #[schema(required = true)]
+    pub parent: Option<String>,
+    /// Event of its parent that separated it: its name or, if it has none, its index in the list of events, from 0.
+    pub separated_by: EventNameOrIndex,
+    /// Time of the separation since the start, s.
+    pub separated_at: f64,
+    /// Its flight.
+    #[serde(flatten)]
+    pub flight: FlightReport,
+    /// Statistics of the numerical integration.
+    pub solver: IntegrationCounts,
+    /// Warnings about the flight.
+    pub warnings: Vec<Warning>,
+}
+
+/// Name of an event, or its index in the list of events if it has no name.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum EventNameOrIndex {
+    /// Name of the event.
+    Name(String),
+    /// Index of the event, from 0.
+    Index(usize),
 }
 
 /// Simulated flight.
@@ -229,31 +305,14 @@ pub struct SimulateResponse {
     pub version: &'static str,
     /// Models used for the flight.
     pub models: Models,
-    /// How the flight ended.
-    pub termination: Termination,
-    /// Index in `stop.when` of the condition that ended the flight, from 0; present if a condition ended it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, nullable = false)]
-    pub condition: Option<usize>,
-    /// State at t = 0 as given, before the events at that instant.
-    pub initial_state: Row,
-    /// State at the end, after the events at that instant.
-    pub final_state: Row,
-    /// Events that happened, in order; present if the request has events.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, nullable = false)]
-    pub events: Option<Vec<EventReport>>,
-    /// Greatest values over the flight.
-    pub peaks: Peaks,
-    /// Parts of the flight between events that change the vehicle (mass, area, coefficients or thrust); present if
-    /// there is more than one. The greatest of their peaks are `peaks`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, nullable = false)]
-    pub phases: Option<Vec<PhaseReport>>,
-    /// Rows of the trajectory; absent with `"output": {"trajectory": false}`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, nullable = false)]
-    pub trajectory: Option<Columns>,
+    /// Flight of the vehicle.
+    #[serde(flatten)]
+    pub flight: FlightReport,
+    /// Flights of the bodies that left the vehicle, and that left them, in the order of their separations; present if
+    /// any did, unless `output.bodies` is `none`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub bodies: Vec<BodyReport>,
     /// Derivatives of the flight; present with `sensitivities`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -277,32 +336,32 @@ pub struct SimulateResponse {
     pub case: Option<Value>,
 }
 
-impl SimulateResponse {
-    /// The answer to a request whose flight was flown in `elapsed` seconds; `points` are the rows that it asks for.
-    pub fn new(
-        requested: FlightRequest,
-        flight: &Trajectory,
-        points: Option<Vec<FlightPoint>>,
-        analyses: RequestedAnalyses,
-        elapsed: f64,
-    ) -> Self {
-        let FlightRequest { request, echo, .. } = requested;
-        let unit = request.angle_unit;
-        let known = request.known();
-        let row = |point| Row::new(point, unit, known);
-        let statistics = flight.statistics();
-        let warnings = Warning::of(&request, flight, analyses.unverified, Purpose::Flight);
+/// A flight of an answer, as the formats have it that are not JSON.
+#[derive(Clone, Copy, Debug)]
+pub struct FlightOfAnswer<'a> {
+    /// The name of the body; none of the vehicle.
+    pub body: Option<&'a str>,
+    /// What is told of its flight.
+    pub report: &'a FlightReport,
+    /// What there is to know of it.
+    pub warnings: &'a [Warning],
+}
+
+impl FlightReport {
+    /// What is told of the flight of a body by a request, with the rows that it asks for.
+    fn new(request: &SimulateRequest, body: &FlownBody, points: Option<Vec<FlightPoint>>) -> Self {
+        let (unit, FlownBody { described: DescribedBody { events, .. }, flight, known, .. }) =
+            (request.angle_unit, body);
+        let row = |point| Row::new(point, unit, *known);
+        let name = |event: usize| events[event].name.clone();
         let report = |EventPoint { event, before, after }| EventReport {
             index: event,
-            name: request.events[event].name.clone(),
+            name: name(event),
             time: before.time,
             state: row(before),
             after: row(after),
         };
-        let events = (!request.events.is_empty()).then(|| flight.events().map(report).collect());
-        let origin = |event: usize, burnout| {
-            Some(PhaseOrigin { index: event, name: request.events[event].name.clone(), burnout })
-        };
+        let origin = |event, burnout| Some(PhaseOrigin { index: event, name: name(event), burnout });
         let phase = |FlightPhase { from, since, until, peaks }| PhaseReport {
             from: match from {
                 PhaseStart::Start => None,
@@ -314,7 +373,6 @@ impl SimulateResponse {
             peaks: Peaks::from(&peaks),
         };
         let phases = flight.phases();
-        let phases = (phases.len() > 1).then(|| phases.into_iter().map(phase).collect());
         let (termination, condition) = match flight.termination() {
             CoreTermination::SurfaceImpact => (Termination::SurfaceImpact, None),
             CoreTermination::StopAltitude => (Termination::StopAltitude, None),
@@ -322,10 +380,53 @@ impl SimulateResponse {
             CoreTermination::Condition(index) => (Termination::Condition, Some(index)),
             CoreTermination::AtmosphereExit => (Termination::AtmosphereExit, None),
         };
+        let propellant = |point: &FlightPoint, part: &str| body.propellant(point, part);
+        let chosen = request.output.columns.as_deref();
         Self {
-            trajectory: points.map(|points| Columns::new(points, request.output.columns, unit, known)),
-            name: request.name,
-            angle_unit: unit,
+            termination,
+            condition,
+            initial_state: row(flight.initial()),
+            final_state: row(flight.last()),
+            events: (!events.is_empty()).then(|| flight.events().map(report).collect()),
+            peaks: Peaks::from(flight.peaks()),
+            phases: (phases.len() > 1).then(|| phases.into_iter().map(phase).collect()),
+            trajectory: points.map(|points| Columns::new(points, chosen, unit, *known, propellant)),
+        }
+    }
+}
+
+impl BodyReport {
+    fn new(request: &SimulateRequest, separation: &FlownSeparation, points: Option<Vec<FlightPoint>>) -> Self {
+        let FlownSeparation { body, parent, event, event_name, time } = separation;
+        let by_index = EventNameOrIndex::Index(*event);
+        Self {
+            name: body.described.name.unwrap_or_default().to_owned(),
+            parent: parent.map(str::to_owned),
+            separated_by: event_name.map_or(by_index, |name| EventNameOrIndex::Name(name.to_owned())),
+            separated_at: *time,
+            flight: FlightReport::new(request, body, points),
+            solver: body.flight.statistics().into(),
+            warnings: Warning::of_body(request, body),
+        }
+    }
+}
+
+impl SimulateResponse {
+    /// The answer to a request by which so much was flown in `elapsed` seconds; `rows` are those that it asks for, of each flight in order.
+    pub fn new(
+        request: &SimulateRequest,
+        flown: &FlownBodies,
+        rows: Vec<Option<Vec<FlightPoint>>>,
+        analyses: RequestedAnalyses,
+        elapsed: f64,
+    ) -> Self {
+        let FlownBodies { vehicle, separated } = flown;
+        let mut rows = rows.into_iter();
+        let flight = FlightReport::new(request, vehicle, rows.next().flatten());
+        let bodies = separated.iter().zip(rows).map(|(body, points)| BodyReport::new(request, body, points));
+        Self {
+            name: request.name.clone(),
+            angle_unit: request.angle_unit,
             version: env!("CARGO_PKG_VERSION"),
             models: Models {
                 planet: MODELS.of(request.planet.model),
@@ -336,27 +437,56 @@ impl SimulateResponse {
                 aerodynamics: vehicle::kind(&request.vehicle.aerodynamics),
                 wind: request.wind.kind(),
             },
-            termination,
-            condition,
-            initial_state: row(flight.initial()),
-            final_state: row(flight.last()),
-            events,
-            peaks: Peaks::from(flight.peaks()),
-            phases,
+            flight,
+            bodies: bodies.collect(),
             sensitivities: analyses.sensitivities,
             covariance: analyses.covariance,
             verification: analyses.verification,
             solver: SolverReport {
                 formulation: FORMULATIONS.of(request.solver.equations),
                 relative_tolerance: request.solver.relative_tolerance,
-                steps: statistics.steps,
-                rejected_steps: statistics.rejected_steps,
-                evaluations: statistics.evaluations,
+                counts: vehicle.flight.statistics().into(),
                 elapsed,
             },
-            warnings,
-            case: echo,
+            warnings: Warning::of(request, vehicle, analyses.unverified, Purpose::Flight),
+            case: analyses.echo,
         }
+    }
+
+    /// All flights, that of the vehicle first.
+    pub fn flights(&self) -> impl Iterator<Item = FlightOfAnswer<'_>> {
+        let vehicle = FlightOfAnswer { body: None, report: &self.flight, warnings: &self.warnings };
+        let bodies = self.bodies.iter().map(|BodyReport { name, flight: report, warnings, .. }| FlightOfAnswer {
+            body: Some(name),
+            report,
+            warnings,
+        });
+        iter::once(vehicle).chain(bodies)
+    }
+
+    /// The rows of all flights that have them as a table: with more than one of these, each row begins with the name of the body, which is
+    /// empty for the vehicle.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write_csv(&self, csv: &mut impl Write) -> Result<(), serde_json::Error> {
+        let tables = self.flights().filter_map(|flight| Some((flight.body, flight.report.trajectory.as_ref()?)));
+        let tables: Vec<_> = tables.collect();
+        let has_names = tables.len() > 1;
+        let Some((_, first)) = tables.first() else { return Ok(()) };
+        // The vehicle has every column that one of its bodies has.
+        first.write_csv_header(csv, if has_names { "body," } else { "" })?;
+        for (body, table) in tables {
+            let beginning = has_names.then(|| format!("{},", csv_text(body.unwrap_or_default())));
+            table.write_csv_lines(csv, &beginning.unwrap_or_default())?;
+        }
+        Ok(())
+    }
+}
+
+impl From<Statistics> for IntegrationCounts {
+    fn from(Statistics { steps, rejected_steps, evaluations }: Statistics) -> Self {
+        Self { steps, rejected_steps, evaluations }
     }
 }
 

@@ -45,7 +45,11 @@ pub(super) fn vehicle(object: &mut Object) -> Option<(Vehicle, Vec<NamedPart>)> 
     let aerodynamics = aerodynamics?;
     // Ratios refer to no area: any does.
     let any_area = matches!(aerodynamics, Aerodynamics::Ballistic { .. }).then_some(1.0);
-    let of_parts = parts.as_ref().map(|parts| parts.iter().map(|part| part.core.mass()).sum());
+    let of_parts = parts.as_ref().map(|parts| parts.iter().map(|part| part.core.mass()).sum::<f64>());
+    if of_parts.is_some_and(|mass| !mass.is_finite()) {
+        object.fault_of("parts", "must have a total mass that is a finite number");
+        return None;
+    }
     let mass = mass.or(of_parts)?;
     let vehicle = Vehicle { mass, reference_area: reference_area.or(any_area)?, aerodynamics, nose_radius };
     Some((vehicle, parts.unwrap_or_default()))

@@ -5,11 +5,12 @@ use reentry::coordinates::UndefinedElements;
 use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use reentry::number_text::{NumberText, apart, rounded};
 use reentry::simulate::SimulationError;
-use reentry::trajectory::{self, TableId, Trajectory};
+use reentry::trajectory::{self, TableId};
 use reentry::vehicle::Aerodynamics;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::bodies::{DescribedBody, FlownBody};
 use super::epoch::Epoch;
 use super::heating::Heating;
 use super::planet::{Planet, PlanetModel};
@@ -44,15 +45,16 @@ impl Warning {
         Self { code, detail: detail.to_owned(), time: None }
     }
 
-    /// What there is to know of a flight and of the request for it; with the reason for which it could not be verified, if it was to be, and
-    /// with the purpose of the flight.
+    /// What there is to know of the flight of a vehicle and of the request for it; with the reason for which it could not be verified, if it was
+    /// to be, and with the purpose of the flight.
     pub fn of(
         request: &SimulateRequest,
-        flight: &Trajectory,
+        vehicle: &FlownBody,
         unverified: Option<SimulationError>,
         purpose: Purpose,
     ) -> Vec<Self> {
-        let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit);
+        let flight = vehicle.flight;
+        let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit, &vehicle.described);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
         warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
         warnings
@@ -76,6 +78,12 @@ impl Warning {
             warnings.push(Self::long_flight(flight.end_time(), relative_tolerance));
         }
         warnings
+    }
+
+    /// What there is to know of the flight of a body.
+    pub fn of_body(request: &SimulateRequest, body: &FlownBody) -> Vec<Self> {
+        let warnings = body.flight.warnings().iter();
+        warnings.map(|warning| Self::of_flight(*warning, request.angle_unit, &body.described)).collect()
     }
 
     /// Angles were read in the default unit.
@@ -150,7 +158,7 @@ impl Warning {
         Self::new("wind_left_out", detail)
     }
 
-    fn of_flight(warning: trajectory::Warning, unit: AngleUnit) -> Self {
+    fn of_flight(warning: trajectory::Warning, unit: AngleUnit, of: &DescribedBody) -> Self {
         let (code, detail) = match warning {
             trajectory::Warning::LiftFadedNearVertical { time } => {
                 let (angle, from) = (Angle(LIFT_FADE_ANGLE, unit), seconds(time));
@@ -197,7 +205,8 @@ impl Warning {
             }
             trajectory::Warning::NotLit { event, part, is_there, time } => {
                 let why = if is_there { "burns already" } else { "has left the vehicle" };
-                let detail = format!("Event {event} lights nothing: part {part} {why} (at {})", seconds(time));
+                let (event, part) = (of.event(event), of.part(part));
+                let detail = format!("Ignition of {event} has no effect (at {}): part {part} {why}", seconds(time));
                 ("not_lit", detail)
             }
             trajectory::Warning::NeverLifted { time } => {
@@ -211,23 +220,26 @@ impl Warning {
                 ("propellant_spent", format!("Propellant is spent: the thrust ends (at {})", seconds(time)))
             }
             trajectory::Warning::ThrustWithoutDirection { event, time } => {
+                let event = of.event(event);
                 let detail = format!(
-                    "Thrust of event {event} has no direction (at {}): its direction is undefined at rest or in \
+                    "Thrust of {event} has no direction (at {}): its direction is undefined at rest or in \
                      vertical flight. It acts once the direction is defined",
                     seconds(time)
                 );
                 ("no_direction", detail)
             }
             trajectory::Warning::NotDeployed { event, parachute, time } => {
+                let [event, parachute] = [event, parachute].map(|place| of.event(place));
                 let detail = format!(
-                    "Release of event {event} has no effect (at {}): the parachute of event {parachute} is not deployed",
+                    "Release of {event} has no effect (at {}): the parachute of {parachute} is not deployed",
                     seconds(time)
                 );
                 ("not_deployed", detail)
             }
             trajectory::Warning::NoDirection { event, time } => {
+                let event = of.event(event);
                 let detail = format!(
-                    "Impulse of event {event} has no effect (at {}): its direction is undefined at rest or in \
+                    "Impulse of {event} has no effect (at {}): its direction is undefined at rest or in \
                      vertical flight",
                     seconds(time)
                 );
@@ -370,7 +382,7 @@ pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
 mod tests {
     use reentry::trajectory::{TableId, Warning as CoreWarning};
 
-    use super::{AngleUnit, Warning};
+    use super::{AngleUnit, DescribedBody, Warning};
 
     #[test]
     fn a_table_that_is_left_is_told_with_what_holds_beyond() {
@@ -422,7 +434,7 @@ mod tests {
         ] {
             let time = 52.916_530_598_660_5;
             let warning = CoreWarning::OutsideTable { table, time, altitude: 109_054.394_121_244_55, edge, above };
-            let warning = Warning::of_flight(warning, AngleUnit::Deg);
+            let warning = Warning::of_flight(warning, AngleUnit::Deg, &DescribedBody::default());
             let code = if table == TableId::Us76 { "outside_model" } else { "outside_table" };
             assert_eq!((warning.code, warning.time, warning.detail.as_str()), (code, Some(time), expected));
         }

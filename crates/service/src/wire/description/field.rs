@@ -15,6 +15,15 @@ enum Need {
     Default(Value),
 }
 
+/// One of a list of names, by its index, or one of others.
+#[derive(Clone, Debug)]
+pub enum NameOr {
+    /// Its index.
+    Name(usize),
+    /// Without the prefix.
+    Other(String),
+}
+
 /// A field of an object, to be read, or to be described. Every way to read it notes its faults, and returns `None` then, and where the field
 /// is left out.
 pub struct Field<'f, 'a, 'b> {
@@ -240,14 +249,23 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
         self.take(|_| schema::words(names), |reader, name| reader.word(name, names))
     }
 
-    /// Names out of several, one or more, none of them twice; their indices.
-    pub fn names(self, names: &[&'static str]) -> Option<Vec<usize>> {
+    /// Names out of several, or others after a prefix; one or more, none of them twice.
+    pub fn names_or(self, names: &[&'static str], prefix: &str, others: &[String]) -> Option<Vec<NameOr>> {
         let schema = || {
-            let mut list = schema::list(&schema::words(names), [1, names.len()]);
+            let other = json!({"type": "string", "pattern": format!("^{}", prefix.replace('.', "\\."))});
+            let mut list = schema::list(&json!({"anyOf": [schema::words(names), other]}), [1, usize::MAX]);
             list["uniqueItems"] = json!(true);
             list
         };
-        self.take(|_| schema(), |reader, name| reader.words(name, names))
+        let with_prefix = others.iter().map(|other| format!("{prefix}{other}"));
+        let all: Vec<_> = names.iter().map(|name| (*name).to_owned()).chain(with_prefix).collect();
+        let all: Vec<_> = all.iter().map(String::as_str).collect();
+        let chosen = self.take(|_| schema(), |reader, name| reader.words(name, &all))?;
+        let named = |index: usize| match index.checked_sub(names.len()) {
+            None => NameOr::Name(index),
+            Some(other) => NameOr::Other(others[other].clone()),
+        };
+        Some(chosen.into_iter().map(named).collect())
     }
 
     /// Something with a reader and a schema of its own.

@@ -1,4 +1,4 @@
-//! `GeoJSON` (RFC 7946): a feature for the track, one for every point.
+//! `GeoJSON` (RFC 7946): for every body a feature for its track, one for every point.
 
 use std::io::Write;
 
@@ -6,13 +6,13 @@ use geojson::{Feature, FeatureCollection, Geometry};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Track, Vertex};
+use super::{BodyTrack, Track, Vertex};
 
 /// Where longitudes jump, degrees.
 const ANTIMERIDIAN: f64 = 180.0;
 
 impl Track<'_> {
-    /// A feature collection: the track, with the time of every vertex in the shape of its coordinates, and the points.
+    /// A feature collection: the tracks, with the time of every vertex in the shape of its coordinates, and the points.
     ///
     /// A line of `GeoJSON` is straight on a map of longitude and latitude. The track is therefore cut at the antimeridian, and led
     /// over a pole by way of it.
@@ -20,28 +20,38 @@ impl Track<'_> {
     /// # Errors
     /// When it cannot be written.
     pub fn write_geojson(&self, out: &mut impl Write) -> Result<(), serde_json::Error> {
-        let parts = cut(&by_way_of_poles(&self.vertices));
+        let mut features = Vec::new();
+        for track in &self.tracks {
+            features.extend(track.vertices.as_ref().map(|vertices| self.line(track, vertices)).transpose()?);
+            for point in &track.points {
+                features.push(feature(Geometry::new_point(point.place.position()), point)?);
+            }
+        }
+        serde_json::to_writer(out, &FeatureCollection::new(features))
+    }
+
+    fn line(&self, track: &BodyTrack, vertices: &[Vertex]) -> Result<Feature, serde_json::Error> {
+        let parts = cut(&by_way_of_poles(vertices));
         let mut properties = json!({
-            "name": self.name(),
+            "name": track.name,
             "kind": "track",
-            "termination": self.answer.termination,
+            "termination": track.told.report.termination,
             "models": self.answer.models,
-            "warnings": self.answer.warnings,
+            "warnings": track.told.warnings,
             "times": in_shape(&parts, |vertex| json!(vertex.time)),
         });
         if self.epoch.is_some() {
             properties["times_utc"] = in_shape(&parts, |vertex| json!(self.utc(vertex.time)));
+        }
+        if let Some(body) = track.told.body {
+            properties["body"] = json!(body);
         }
         let lines = parts.iter().map(|part| part.iter().map(Vertex::position));
         let geometry = match &parts[..] {
             [part] => Geometry::new_line_string(part.iter().map(Vertex::position)),
             _ => Geometry::new_multi_line_string(lines),
         };
-        let mut features = vec![feature(geometry, properties)?];
-        for point in &self.points {
-            features.push(feature(Geometry::new_point(point.place.position()), point)?);
-        }
-        serde_json::to_writer(out, &FeatureCollection::new(features))
+        feature(geometry, properties)
     }
 }
 

@@ -6,7 +6,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 use serde_json::{Map, Value};
 
-use super::{NamedPoint, Track, Vertex};
+use super::{BodyTrack, NamedPoint, Track, Vertex};
 
 type Xml<'a> = Writer<&'a mut dyn Write>;
 
@@ -14,7 +14,8 @@ type Xml<'a> = Writer<&'a mut dyn Write>;
 pub(super) const GLOBES: [&str; 2] = ["mars", "moon"];
 
 impl Track<'_> {
-    /// A document: with an epoch a track with an instant a vertex, without one a line; then the points.
+    /// A document: with an epoch a track with an instant a vertex, without one a line; then the points. Each body that left has a folder of
+    /// these.
     ///
     /// Altitudes are absolute: above the sea, as KML has it, where the case's are above the ellipsoid. Characters that XML cannot hold
     /// come as U+FFFD.
@@ -36,25 +37,34 @@ impl Track<'_> {
         }
         root.write_inner_content(|xml| {
             element(xml, "Document", |xml| {
-                text(xml, "name", self.name())?;
-                text(xml, "description", &self.notes())?;
-                element(xml, "Placemark", |xml| {
-                    text(xml, "name", self.name())?;
-                    if self.epoch.is_some() { self.track(xml) } else { line(xml, &self.vertices) }
-                })?;
-                self.points.iter().try_for_each(|point| placemark(xml, point))
+                self.tracks.iter().try_for_each(|track| match track.told.body {
+                    None => self.body(xml, track),
+                    Some(_) => element(xml, "Folder", |xml| self.body(xml, track)),
+                })
             })
         })?;
         Ok(())
     }
 
-    fn track(&self, xml: &mut Xml) -> io::Result<()> {
+    fn body(&self, xml: &mut Xml, track: &BodyTrack) -> io::Result<()> {
+        text(xml, "name", track.name)?;
+        text(xml, "description", &track.notes())?;
+        if let Some(vertices) = &track.vertices {
+            element(xml, "Placemark", |xml| {
+                text(xml, "name", track.name)?;
+                if self.epoch.is_some() { self.track(xml, vertices) } else { line(xml, vertices) }
+            })?;
+        }
+        track.points.iter().try_for_each(|point| placemark(xml, point))
+    }
+
+    fn track(&self, xml: &mut Xml, vertices: &[Vertex]) -> io::Result<()> {
         element(xml, "gx:Track", |xml| {
             text(xml, "altitudeMode", "absolute")?;
-            for instant in self.vertices.iter().filter_map(|vertex| self.utc(vertex.time)) {
+            for instant in vertices.iter().filter_map(|vertex| self.utc(vertex.time)) {
                 text(xml, "when", &instant.to_string())?;
             }
-            self.vertices.iter().try_for_each(|vertex| text(xml, "gx:coord", &coordinates(vertex, " ")))
+            vertices.iter().try_for_each(|vertex| text(xml, "gx:coord", &coordinates(vertex, " ")))
         })
     }
 }

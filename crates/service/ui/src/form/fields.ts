@@ -185,7 +185,9 @@ function fieldOf(property: Property, schemaName: string, name: string): Field {
         const { one, empty } = ELEMENTS[place] ?? { one: label, empty: {} };
         return { kind: 'list', label, one, empty, item: referred(nameOf(items.$ref), label, {}, place) };
       }
-      if (items.enum) return { kind: 'several', label, words: items.enum };
+      // Columns: those of the list, or of a part of the vehicle, which the case names.
+      const words = items.enum ?? items.anyOf?.find((one) => one.enum)?.enum;
+      if (words) return { kind: 'several', label, words };
       if (items.type === 'string') return { kind: 'names', label, ...hint };
       if (items.type === 'array') return { kind: 'matrix', label };
       if (property.minItems === 3 && property.maxItems === 3) return { kind: 'vector', label, unit: unit ?? '' };
