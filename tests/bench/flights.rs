@@ -16,7 +16,7 @@ use reentry::atmosphere::us76;
 use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
-use reentry::simulate::{arrival, arrivals};
+use reentry::simulate::{arrival, arrivals, simulate_with_bodies};
 use reentry::trajectory::Sampling;
 use reentry::verification::verify;
 use reentry::{Case, FlightPath, PlanetFixed, Scenario, Solver, Stop, simulate};
@@ -38,6 +38,7 @@ fn main() {
     layers();
     upper_air();
     heating_and_events();
+    ascents();
     number_types();
 }
 
@@ -351,6 +352,32 @@ fn heating_and_events() {
             let ratio = time / times[0];
             println!("| {name} | {what} | {evaluations} | {steps} | {rejected} | {time:.1} µs | {ratio:.2} |");
         }
+    }
+}
+
+/// Launches with all that leaves the vehicle, and the same without the bodies.
+fn ascents() {
+    println!("\n| flight | bodies | right-hand sides | steps | rejected | time | without the bodies |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    let launches = [
+        ("launcher", include_str!("../../openapi/examples/launcher.json")),
+        ("sounding rocket", include_str!("../../openapi/examples/sounding_rocket.json")),
+        ("abort", include_str!("../../openapi/examples/abort.json")),
+    ];
+    for (name, request) in launches {
+        let scenario = job(&json::parse(request.as_bytes()).unwrap()).scenario;
+        let flights = simulate_with_bodies(&scenario, &NEVER).unwrap();
+        let of_bodies = flights.bodies.iter().map(|body| body.trajectory.statistics());
+        let all: Vec<_> = of_bodies.chain([flights.vehicle.statistics()]).collect();
+        let sum = |of: fn(&Statistics) -> usize| all.iter().map(of).sum::<usize>();
+        let (evaluations, steps) = (sum(|statistics| statistics.evaluations), sum(|statistics| statistics.steps));
+        let rejected = sum(|statistics| statistics.rejected_steps);
+        let [with, without] = micros([
+            &mut timed(|| simulate_with_bodies(black_box(&scenario), &NEVER)),
+            &mut timed(|| simulate(black_box(&scenario), &NEVER)),
+        ]);
+        let bodies = flights.bodies.len();
+        println!("| {name} | {bodies} | {evaluations} | {steps} | {rejected} | {with:.1} µs | {without:.1} µs |");
     }
 }
 

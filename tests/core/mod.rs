@@ -1,8 +1,10 @@
 //! The physics of the core: each test against something independent.
 
 pub(crate) mod flights;
+pub(crate) mod rockets;
 
 mod analytic;
+mod ascent;
 mod atmosphere;
 mod bodies;
 mod conversions;
@@ -19,6 +21,7 @@ mod model_modes;
 mod nrlmsise00;
 mod number_types;
 mod parachutes;
+mod part_slopes;
 mod parts;
 mod phases;
 mod pitfalls;

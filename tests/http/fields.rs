@@ -265,6 +265,8 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
             &[("/against", Required, NameOrObject), ("/against/since", Required, Text), ("/at", Required, Numbers)],
         ),
         "columns" => ("/output", &[("/columns", Optional, Names)]),
+        "no bodies" => ("/output", &[("/bodies", Optional, Name)]),
+        "nearest site" => ("/output", &[("/sites", Optional, Boolean)]),
         "heating" => (
             "/heating",
             &[

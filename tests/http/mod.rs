@@ -18,6 +18,7 @@ mod ranges;
 mod analytic;
 mod assumed;
 mod batch;
+mod bodies;
 mod columns;
 mod convert;
 mod events;

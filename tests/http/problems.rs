@@ -25,7 +25,7 @@ fn post(path: &str, media_type: &str, body: impl Into<Body>) -> Request<Body> {
     request.body(body.into()).unwrap()
 }
 
-fn post_json(path: &str, body: &Value) -> Request<Body> {
+pub(crate) fn post_json(path: &str, body: &Value) -> Request<Body> {
     post(path, "application/json", body.to_string())
 }
 

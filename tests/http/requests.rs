@@ -200,6 +200,8 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             ),
         ),
         ("columns", with(&flight(), "/output/columns", json!(["time", "altitude"]))),
+        ("no bodies", with(&flight(), "/output/bodies", "none")),
+        ("nearest site", with(&flight(), "/output/sites", true)),
         (
             "heating",
             with(

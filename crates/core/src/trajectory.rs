@@ -242,7 +242,7 @@ pub struct FlightPoint {
     pub inertial_flight_path_angle: f64,
     /// Half the squared inertial speed and the potential of the planet's gravity, J/kg.
     pub specific_energy: f64,
-    /// Relative to the rotating planet, by [`Planet::energy`](crate::Planet::energy), J/kg.
+    /// Relative to the rotating planet, by [`Planet::energy`](crate::planet::Planet::energy), J/kg.
     pub energy: f64,
     /// From the initial ground point along its heading, m, on the great circle of the sphere of radius r₀, counted on continuously over
     /// whole turns; none where the flight starts vertically or at rest. At the poles of the great circle, where the crossrange is a

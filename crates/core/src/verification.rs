@@ -49,7 +49,7 @@ pub fn verify(
 
 /// The greatest error of the balance, and the work of drag and thrust, J/kg.
 ///
-/// The energy is that of [`Planet::energy`](crate::Planet::energy); an impulse adds what it adds to V²/2.
+/// The energy is that of [`Planet::energy`](crate::planet::Planet::energy); an impulse adds what it adds to V²/2.
 fn energy_balance(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<(f64, Power), SimulationError> {
     let energy = |state: &PlanetFixed<f64>| flight.case.planet.energy(&state.position, state.velocity.norm());
     let mut given = energy(&flight.case.initial_state);

@@ -336,3 +336,23 @@ impl IntoResponse for ApiError {
         response
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_that_fails_is_told_by_its_separation() {
+        let at = |body: &[(usize, usize)], error| ApiError::Flight(BodyError { body: body.to_vec(), error }).problem();
+        let limit = SimulationError::StepLimit { time: 1.0, limit: 10 };
+        assert!(at(&[], limit).errors.is_empty());
+        let problem = at(&[(3, 0), (1, 2)], limit);
+        assert_eq!(problem.errors[0].pointer, "/events/3/then/separate/0/events/1/then/separate/2");
+        assert_eq!(problem.errors[0].detail, limit.to_string());
+        assert_eq!(problem.detail, format!("the flight of a body cannot be completed: {limit}"));
+        let rest = SimulationError::NoDirection { event: 4, time: 1.0, altitude: 0.0 };
+        assert_eq!(at(&[(3, 0)], rest).errors[0].pointer, "/events/3/then/separate/0/events/4/then/thrust/along");
+        let pole = SimulationError::Singularity { time: 1.0, at: reentry::motion::Singularity::Pole };
+        assert_eq!(at(&[(3, 0)], pole).errors[0].pointer, "/solver/formulation");
+    }
+}

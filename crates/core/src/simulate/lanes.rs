@@ -23,12 +23,12 @@ type End = Result<Arrival, SimulationError>;
 pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<End> {
     let shared = |scenario: &Scenario| {
         let case = scenario.case();
-        (case.models(), case.solver.equations, case.is_watched())
+        (case.models(), case.solver.equations, flies_alone(case))
     };
     let mut ends = Vec::with_capacity(scenarios.len());
     for group in scenarios.chunk_by(|a, b| shared(a) == shared(b)) {
         let Some(case) = group.first().map(Scenario::case) else { continue };
-        if case.forces().has_switches() || case.is_watched() || case.heating.is_some() {
+        if case.forces().has_switches() || flies_alone(case) {
             ends.extend(group.iter().map(|scenario| arrival(scenario, interrupt)));
             continue;
         }
@@ -38,6 +38,11 @@ pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &dyn Interrup
         });
     }
     ends
+}
+
+/// Whether more may happen in a flight than lanes know: something is watched, heated or held, or made of parts.
+fn flies_alone(case: &Case) -> bool {
+    case.is_watched() || case.heating.is_some() || case.hold_down || !case.parts.is_empty()
 }
 
 /// A flight, and its place among the scenarios.

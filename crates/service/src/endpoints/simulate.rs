@@ -20,6 +20,10 @@ use crate::wire::trajectory::SimulateResponse;
 /// and final states, the peaks and the trajectory. `text/csv` contains only the trajectory: a header with the column
 /// names, and one line per row.
 ///
+/// The bodies that leave the vehicle are flown too, on its clock, and given in `bodies`. In a table their rows follow
+/// those of the vehicle, and each row begins with the name of the body, empty for the vehicle, in a column `body`; maps
+/// have a track and points for each body, with its name as `body`, and an ephemeris message segments for each.
+///
 /// `text/vnd.ccsds.oem` is an Orbit Ephemeris Message of CCSDS 502.0-B: states in GCRF at the Earth, in MCI at Mars. It
 /// requires an epoch.
 ///

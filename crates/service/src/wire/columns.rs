@@ -266,7 +266,8 @@ pub static COLUMNS: [Column; 47] = [
     ),
     maybe(
         "heat_load",
-        "Integral of both heat fluxes since the start, J/m²; present with `heating`.",
+        "Integral of both heat fluxes since the start or, of a body, since its separation, J/m²; present with \
+         `heating`.",
         Requirement::Heating,
         |point| point.heat_load,
     ),
@@ -292,7 +293,8 @@ pub static COLUMNS: [Column; 47] = [
     ),
     column(
         "ground_distance",
-        "Length of the ground track since the start, m, on the sphere with the equatorial radius.",
+        "Length of the ground track since the start or, of a body, since its separation, m, on the sphere with the \
+         equatorial radius.",
         |point| point.ground_distance,
     ),
     orbit("semi_major_axis", SEMI_MAJOR_AXIS, |orbit| match orbit.elements.shape {

@@ -41,6 +41,8 @@ export const QUANTITIES: Record<Name, Quantity> = {
   ground_distance: plain('Ground track length', 'km', 1e-3),
   mass: plain('Mass', 'kg'),
   thrust: plain('Thrust', 'N'),
+  throttle: plain('Throttle', ''),
+  pitch: angle('Pitch'),
   bank_angle: angle('Bank angle'),
   angle_of_attack: angle('Angle of attack'),
   density: plain('Air density', 'kg/m³'),

@@ -13,6 +13,7 @@ export interface Property {
   const?: unknown;
   enum?: string[];
   items?: Property;
+  anyOf?: Property[];
   minItems?: number;
   maxItems?: number;
   $ref?: string;
