@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use nalgebra::Rotation3;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Effect, Quantity, Separation, Throttle, Tilt, Trigger};
 use reentry::part::{Part, ThrustEntry, ThrustProfile};
@@ -148,7 +149,7 @@ fn launcher() -> Case {
     };
     let bodies = vec![body(1), body(0)];
     let axes = launch_axes(&case.planet, &case.initial_state.position, 1.2);
-    let tangent = Steering::LinearTangent { axes, a: 1.5, b: 0.012 };
+    let tangent = Steering::LinearTangent { axes: Rotation3::from_matrix_unchecked(axes), a: 1.5, b: 0.012 };
     let tilt = Some(Tilt { angle: 0.04, azimuth: 1.2 });
     let throttle = vec![Throttle { part: 0, value: 0.7 }];
     let events = vec![
@@ -213,7 +214,8 @@ fn limited(boosted: bool) -> Case {
     };
     let pitch = schedule(Against::Time, &[10.0, 25.0, 60.0], &[1.5, 1.3, 0.6]);
     let yaw = schedule(Against::Altitude, &[2e3, 9e3], &[0.0, 0.1]);
-    let program = Steering::Program(Program { axes: ProgramAxes::Inertial(axes), pitch, yaw });
+    let program =
+        Steering::Program(Program { axes: ProgramAxes::Inertial(Rotation3::from_matrix_unchecked(axes)), pitch, yaw });
     let events = vec![
         at(0.0, Effect { load_limit: Some(Some(2.6)), ..ignite(if boosted { &[0, 1] } else { &[0] }) }),
         lift_off(),
