@@ -644,7 +644,10 @@ impl Kind {
     /// Values of types that the field does not hold.
     pub(crate) fn mistyped(self) -> Vec<Value> {
         let mut wrong = if matches!(self, NumberOrNull(_)) { vec![] } else { vec![json!(null)] };
-        let number = matches!(self, Number(_) | NumberOrNull(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime);
+        let number = matches!(
+            self,
+            Number(_) | NumberOrNull(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime
+        );
         if !number {
             wrong.push(json!(13));
         }

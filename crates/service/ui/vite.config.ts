@@ -21,6 +21,7 @@ export default defineConfig({
         '/simulate',
         '/convert',
         '/analytic',
+        '/sites',
         '/validation',
         '/licences',
         '/docs',

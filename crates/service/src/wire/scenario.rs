@@ -705,7 +705,6 @@ impl SimulateRequest {
             bodies,
         }
     }
-
 }
 
 /// Whether a fault is that of a name, of which the request has one with the name itself.
@@ -835,7 +834,8 @@ impl<'a> Flown<'a> {
             for (place, separation) in event.then.separated.iter().enumerate() {
                 let pointer = format!("/events/{index}/then/separate/{place}");
                 // Whether names of no parts are all that is missing is not known.
-                let missing = separation.is_of(parts).then(|| separation.vehicle(&separation.parts_of(parts), &pointer));
+                let missing =
+                    separation.is_of(parts).then(|| separation.vehicle(&separation.parts_of(parts), &pointer));
                 faults.extend(missing.and_then(Result::err).into_iter().flatten());
                 let of_body = self.body(separation, pointer.clone()).faults();
                 faults.extend(

@@ -3,6 +3,8 @@ import type { components } from './generated/api';
 type Schemas = components['schemas'];
 export type Case = Schemas['SimulateRequest'];
 export type State = Schemas['State'];
+/** A state, or a launch. */
+export type InitialState = Schemas['InitialState'];
 export type Answer = Schemas['SimulateResponse'];
 export type Columns = Schemas['Columns'];
 export type Row = Schemas['Row'];
@@ -42,6 +44,13 @@ export function convert(body: unknown, signal?: AbortSignal): Promise<Conversion
 /** A closed-form theory beside the flight. */
 export function analytic(body: unknown, signal?: AbortSignal): Promise<Theory> {
   return post('analytic', body, signal);
+}
+
+/** The sites that a case may name. */
+export async function sites(): Promise<Schemas['ListedSite'][]> {
+  const response = await fetch(address('sites'));
+  if (!response.ok) throw new ProblemError(await problemOf(response));
+  return ((await response.json()) as Schemas['Sites']).sites;
 }
 
 /** What a path makes of a body, as it comes. */

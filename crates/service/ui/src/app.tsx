@@ -2,6 +2,7 @@ import { useSignal } from '@preact/signals';
 import type { ComponentType } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import { address, type Case } from './api';
+import { Bodies } from './bodies';
 import { Cards, Computing, Dispersions, Problems, Sensitivities, Warnings } from './cards';
 import { Compare, Pin, Theories } from './compare';
 import { open, opened, start } from './fly';
@@ -323,6 +324,7 @@ function FlightView() {
       <Cards />
       <Warnings />
       <Take />
+      <Bodies />
       <Plots />
       <Compare />
       {Maps ? <Maps /> : <p class="quiet map-space">Loading map …</p>}

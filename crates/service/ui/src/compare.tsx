@@ -1,10 +1,10 @@
 import type { Solution } from './api';
 import { difference, endsApart, type Figure, figuresOf, number } from './figures';
-import type { Run } from './flight';
+import { COLOURS, type Run } from './flight';
 import { completed } from './fly';
 import { isSameGround, planetOf } from './planets';
 import { Scroll } from './scroll';
-import { angleUnit, current, pins, runs, solution, theory, theoryProblem } from './store';
+import { angleUnit, current, pins, runs, solution, theory, theoryProblem, tracks } from './store';
 
 const MOST = 6;
 let lastId = 0;
@@ -13,8 +13,11 @@ let lastId = 0;
 function pin(): void {
   if (!current.value) return;
   lastId += 1;
-  const used = pins.value.map((run) => run.colour);
-  const colour = [1, 2, 3, 4, 5, 6].find((candidate) => !used.includes(candidate)) ?? 1;
+  const used = (of: Run[]) => new Set(of.map((run) => run.colour));
+  const [byAny, byPins] = [used(tracks.value), used(pins.value)];
+  const colours = Array.from({ length: COLOURS }, (_, index) => index + 1);
+  // The colours of bodies are shared where there are no others.
+  const colour = colours.find((candidate) => !byAny.has(candidate)) ?? colours.find((candidate) => !byPins.has(candidate)) ?? 1;
   pins.value = [...pins.value, { ...current.value, id: lastId, label: `${current.value.case.name ?? 'Flight'} #${lastId}`, colour }];
   void completed(lastId);
 }

@@ -1,4 +1,4 @@
-import type { Answer, Case } from './api';
+import type { Answer, Case, Schemas } from './api';
 import { type Name, QUANTITIES } from './quantities';
 
 /** The numbers of a row, in SI, angles in degrees. */
@@ -23,10 +23,25 @@ export interface Flight {
   initial: Numbers;
   final: Numbers;
   marks: Mark[];
+  /** What left the vehicle, or a body that did. */
+  bodies: Body[];
+}
+
+/** A body that left the vehicle, and its flight, on the clock of the case. */
+export interface Body {
+  name: string;
+  /** The body that it left; null where it left the vehicle. */
+  parent: string | null;
+  /** The event that separated it. */
+  separatedBy: string;
+  /** s. */
+  separatedAt: number;
+  flight: Flight;
 }
 
 /** A flight beside others. */
 export interface Run {
+  /** 0 of the current flight, above it of a pinned one, below it of a body that left the current one. */
   id: number;
   /** What it is called where several are shown. */
   label: string;
@@ -68,7 +83,47 @@ export function flightOf(answer: Answer): Flight {
       .filter(([name]) => name in QUANTITIES)
       .map(([name, values]) => [name, columnOf(values as (number | null)[], factor(name as Name))]),
   ) as Trajectory;
-  return { answer, columns, initial: numbers(answer.initial_state), final: numbers(answer.final_state), marks: marksOf(answer) };
+  return {
+    answer,
+    columns,
+    initial: numbers(answer.initial_state),
+    final: numbers(answer.final_state),
+    marks: marksOf(answer),
+    bodies: (answer.bodies ?? []).map((body) => bodyOf(answer, body)),
+  };
+}
+
+/** A body of an answer: its flight is one like that of the vehicle, with the same models. */
+function bodyOf({ bodies: _, ...answer }: Answer, body: Schemas['BodyReport']): Body {
+  const { name, parent, separated_by: by, separated_at: separatedAt, solver, ...flight } = body;
+  const { events: __, phases: ___, trajectory: ____, condition: _____, ...shared } = answer;
+  return {
+    name,
+    parent: parent ?? null,
+    separatedBy: typeof by === 'number' ? `event ${by + 1}` : by,
+    separatedAt,
+    flight: flightOf({ ...shared, ...flight, solver: { ...answer.solver, ...solver } }),
+  };
+}
+
+/** The colours of runs that are not the current one. */
+export const COLOURS = 6;
+
+/** A flight and the bodies that left it, each with a colour; there may be more of them than colours. */
+export function withBodies(run: Run): Run[] {
+  const bodies = run.flight.bodies.map(({ name, flight }, index) => ({
+    ...run,
+    id: -1 - index,
+    label: name,
+    colour: 1 + (index % COLOURS),
+    flight,
+  }));
+  return [run, ...bodies];
+}
+
+/** Whether a flight is under way at an instant: a body is not before its separation. */
+export function isFlying(flight: Flight, time: number): boolean {
+  return time >= (flight.initial.time ?? 0) && time <= (flight.final.time ?? 0);
 }
 
 /** How a flight ended, in a few words. */

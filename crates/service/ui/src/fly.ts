@@ -209,8 +209,9 @@ function columnsOf(tree: Case): { columns?: string[] } {
 }
 
 /** On which it depends what is known of a flight. */
-function modelsOf({ planet, atmosphere, epoch, heating, events }: Case): string {
-  return JSON.stringify([planet, atmosphere, epoch, heating, events]);
+function modelsOf({ planet, atmosphere, epoch, heating, events, vehicle, initial_state }: Case): string {
+  const parts = Array.isArray(vehicle?.parts);
+  return JSON.stringify([planet, atmosphere, epoch, heating, events, parts, initial_state?.type === 'launch']);
 }
 
 /** The theory beside the flight; it knows no heating, which changes nothing of the flight. */

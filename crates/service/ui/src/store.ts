@@ -1,6 +1,6 @@
 import { computed, effect, signal } from '@preact/signals';
 import type { Case, Problem, Solution, Theory } from './api';
-import type { Run } from './flight';
+import { type Run, withBodies } from './flight';
 import { remember, remembered } from './memory';
 import type { AngleUnit, Name } from './quantities';
 
@@ -37,6 +37,12 @@ export const caseUnit = computed<AngleUnit>(() => (draft.value.angle_unit === 'd
 
 /** All flights that are shown: the current one, then the pins. */
 export const runs = computed<Run[]>(() => (current.value ? [current.value, ...pins.value] : pins.value));
+
+/** All that plots and maps draw: the current flight, the bodies that left it, the pins. */
+export const tracks = computed<Run[]>(() => (current.value ? [...withBodies(current.value), ...pins.value] : pins.value));
+
+/** When the last of the current flight and its bodies ends, s. */
+export const lastEnd = computed(() => Math.max(0, ...tracks.value.filter(({ id }) => id <= 0).map(({ flight }) => flight.final.time ?? 0)));
 
 /** Whether a flight is under way. */
 export const isBusy = signal(false);

@@ -11,6 +11,10 @@ export type Field =
   | { kind: 'flag'; label: string; orObject?: true }
   /** Written as JSON alone. */
   | { kind: 'json'; label: string }
+  /** The slug of a site, where the launch is not at a place. */
+  | { kind: 'site'; label: string }
+  /** The parts of a vehicle, in a table. */
+  | { kind: 'parts'; label: string; item: Field; choice?: string }
   /** One of several words. */
   | { kind: 'words'; label: string; words: Record<string, string>; choice?: string }
   /** Three numbers. */
@@ -86,6 +90,7 @@ const TABLES: Record<string, string[]> = {
 /** Fields that stand in lines of their own, though only one of them is given. */
 const APART = [
   ['quantity', 'event'],
+  ['site', 'geodetic_latitude'],
   ['east', 'speed'],
 ];
 
@@ -93,7 +98,10 @@ const APART = [
 const HINTS: Record<string, string> = {
   'SimulateRequest.epoch': '2026-11-26T12:00:00Z',
   'Condition.event': 'event name',
+  'Condition.burnout': 'part name',
   'Effect.release': 'parachute names',
+  'Effect.ignite': 'part names',
+  'Effect.shut_down': 'part names',
 };
 
 /** What the choice of a kind says where there is none. */
@@ -101,7 +109,9 @@ const NONE: Record<string, string> = {
   'SimulateRequest.atmosphere': 'Exponential (default)',
   'SimulateRequest.wind': 'No wind',
   'Planet.gravity': 'Inverse square (default)',
+  'Control.steering': 'Along the velocity (default)',
   'Effect.aerodynamics': 'Unchanged',
+  'Effect.steer': 'Unchanged',
 };
 
 /** What switches on a group that may be left out. */
@@ -109,6 +119,7 @@ const SWITCHES: Record<string, string> = {
   'SimulateRequest.heating': 'Compute heat fluxes (requires a nose radius)',
   'Effect.delta_v': 'Impulsive Δv',
   'Effect.deploy': 'Deploy a parachute',
+  'Effect.tilt': 'Tilt the velocity',
 };
 
 /** What an element of a list is called, and what it begins with. */
@@ -117,6 +128,9 @@ const ELEMENTS: Record<string, { one: string; empty: object }> = {
   'SimulateRequest.events': { one: 'event', empty: { when: { quantity: 'altitude', falls_through: 10000 }, then: {} } },
   'Stop.when': { one: 'condition', empty: { quantity: 'load_factor', rises_through: 12 } },
 };
+
+/** What is written as JSON: it has a form of its own within, or names of the case. */
+const AS_JSON = new Set(['SimulateRequest.dispersions', 'Effect.throttle', 'Effect.separate']);
 
 /** A schema by its name. */
 function named(name: string): Schema {
@@ -155,7 +169,9 @@ function fieldOf(property: Property, schemaName: string, name: string): Field {
   const label = property.title ?? name;
   const unit = property['x-unit'];
   const measured = unit === 'angle' ? { isAngle: true as const } : unit ? { unit } : {};
-  if (place === 'SimulateRequest.dispersions') return { kind: 'json', label };
+  if (AS_JSON.has(place)) return { kind: 'json', label };
+  if (place === 'Launch.site') return { kind: 'site', label };
+  if (place === 'Vehicle.parts') return { kind: 'parts', label, item: referred('Part', label, {}, place) };
   const hint = HINTS[place] ? { hint: HINTS[place] } : {};
   if (property.$ref) return referred(nameOf(property.$ref), label, measured, place);
   switch (property.type) {
@@ -226,9 +242,6 @@ function kindsOf(name: string): Record<string, Kind> {
 
 /** The parts of a case. */
 export const SECTIONS = fieldsOf('SimulateRequest') as Record<keyof Case, Field>;
-
-/** The kinds of a state. */
-export const STATES = kindsOf('State');
 
 /** A schedule of an angle. */
 export const SCHEDULE: Kind = { label: 'Schedule', schema: 'Schedule', fields: fieldsOf('Schedule') };

@@ -1,17 +1,20 @@
 import schema from 'virtual:schema';
-import { computed } from '@preact/signals';
-import type { ComponentChildren } from 'preact';
 import { useState } from 'preact/hooks';
-import { address, type Case, type State } from '../api';
-import { ANGLE_QUANTITIES, get, inUnit, legible, type Path, pointer, set, turned } from '../case';
+import { address, type Case, type InitialState } from '../api';
+import { get, inUnit, type Path, pointer } from '../case';
 import { capital } from '../figures';
 import { chapterOf } from '../guide';
 import { bodyIn, isBody, modelOf } from '../planets';
 import type { AngleUnit } from '../quantities';
 import { angleUnit, caseUnit, draft, problem } from '../store';
+import { eventInWords } from './effects';
 import { CONVECTIVE, type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SINCE, SUTTON_GRAVES, THRUST } from './fields';
 import { exchanged, forget, settled } from './held';
-import { NumberInput, type Reading, RowsInput, TextInput } from './inputs';
+import { NumberInput, RowsInput, TextInput } from './inputs';
+import { Json } from './json';
+import { angles, Block, Faults, helpOf, idOf, inputOf, isAngle, isWithin, Line, put, select, unitOf } from './line';
+import { Parts } from './parts';
+import { LaunchPlace } from './place';
 import { settle } from './planet';
 import type { Property } from './schema';
 import { rename, retype } from './state';
@@ -88,23 +91,6 @@ function settlement(): string {
   return now && now.model === modelOf(draft.value) ? now.changes.join(' ') : '';
 }
 
-function isWithin(inner: string, outer: string): boolean {
-  return inner === outer || inner.startsWith(`${outer}/`);
-}
-
-/** What is wrong with a field; with its elements as well, where they are not fields of their own. */
-function faultsOf(path: Path, isWhole: boolean): string[] {
-  const own = pointer(path);
-  const faults = problem.value?.errors ?? [];
-  return faults
-    .filter((fault) => (isWhole ? isWithin(fault.pointer, own) : fault.pointer === own))
-    .map((fault) => (fault.pointer === own ? fault.detail : `${fault.pointer.slice(own.length + 1)}: ${fault.detail}`));
-}
-
-const put = (path: Path, value: unknown) => {
-  draft.value = set(draft.peek(), path, value);
-};
-
 interface ItemProps {
   field: Field;
   path: Path;
@@ -135,7 +121,11 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
         </Line>
       );
     case 'json':
-      return null;
+      return <Json label={field.label} path={path} />;
+    case 'site':
+      return <LaunchPlace path={path} />;
+    case 'parts':
+      return <Parts path={path} />;
     case 'vector':
       return <Vector label={field.label} unit={field.unit} path={path} property={property} />;
     case 'matrix':
@@ -187,85 +177,6 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
   }
 }
 
-/** The unit of a field, at a path where that decides it. */
-function unitOf(field: Field, path?: Path): string | undefined {
-  if (isAngle(field, path)) return angleUnit.value === 'deg' ? '°' : 'rad';
-  return 'unit' in field ? field.unit : undefined;
-}
-
-/** Whether a field is an angle; the value of a condition is one where its quantity is. */
-function isAngle(field: Field, path?: Path): boolean {
-  if ('isAngle' in field && field.isAngle) return true;
-  const name = path?.at(-1);
-  if (!path || (name !== 'falls_through' && name !== 'rises_through')) return false;
-  return ANGLE_QUANTITIES.has(get(draft.value, [...path.slice(0, -1), 'quantity']));
-}
-
-/** Angles are read and typed in the reader's unit; the case keeps its own, and with it every number as it was typed. */
-const angles = computed<Reading>(() => {
-  const [own, readers] = [caseUnit.value, angleUnit.value];
-  return { shown: (value) => legible(value, own, readers), stored: (value) => turned(value, readers, own) };
-});
-
-const idOf = (path: Path) => `field${pointer(path)}`;
-
-/** The description of a field, without the marks of Markdown. */
-function helpOf(property: Property | undefined): string | undefined {
-  return property?.description?.replaceAll('`', '');
-}
-
-/** What every input has: its identity, and what is wrong with it. */
-function inputOf(path: Path, isWhole: boolean, property?: Property) {
-  const faults = faultsOf(path, isWhole);
-  return {
-    id: idOf(path),
-    isBad: faults.length > 0,
-    describedBy: faults.length > 0 ? `${idOf(path)}-fault` : undefined,
-    help: helpOf(property),
-  };
-}
-
-function Faults({ path, isWhole = false }: { path: Path; isWhole?: boolean }) {
-  const faults = faultsOf(path, isWhole);
-  if (faults.length === 0) return null;
-  return (
-    <p class="fault" id={`${idOf(path)}-fault`}>
-      {faults.join(' · ')}
-    </p>
-  );
-}
-
-interface LineProps {
-  label: ComponentChildren;
-  path: Path;
-  property?: Property | undefined;
-  unit?: string | undefined;
-  children: ComponentChildren;
-}
-
-/** A label, an input and its unit. */
-function Line({ label, path, property, unit, children }: LineProps) {
-  return (
-    <div class="line" title={helpOf(property)}>
-      {typeof label === 'string' ? <label for={idOf(path)}>{label}</label> : label}
-      {children}
-      <span class="unit">{unit}</span>
-      <Faults path={path} isWhole />
-    </div>
-  );
-}
-
-/** A label above an input that takes the whole width. */
-function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
-  return (
-    <div class="block" title={helpOf(property)}>
-      <label for={idOf(path)}>{label}</label>
-      {children}
-      <Faults path={path} isWhole />
-    </div>
-  );
-}
-
 /** The input of a field that fits a line. */
 function Control({ field, path, property, name }: ItemProps) {
   const value = get(draft.value, path);
@@ -298,8 +209,11 @@ function Control({ field, path, property, name }: ItemProps) {
         <input
           id={input.id}
           type="checkbox"
-          checked={value === true || (field.orObject === true && typeof value === 'object')}
-          onChange={(event) => put(path, event.currentTarget.checked ? true : undefined)}
+          checked={(value ?? property?.default) === true || (field.orObject === true && typeof value === 'object')}
+          onChange={(event) => {
+            const { checked } = event.currentTarget;
+            put(path, checked === (property?.default === true) ? undefined : checked);
+          }}
         />
       );
     case 'numbers':
@@ -368,11 +282,6 @@ function Words({
       ))}
     </select>
   );
-}
-
-function select(path: Path) {
-  const { id, isBad, describedBy } = inputOf(path, false);
-  return { id, 'aria-invalid': isBad, 'aria-describedby': describedBy };
 }
 
 function Vector({ label, unit, path, property }: { label: string; unit: string; path: Path; property?: Property | undefined }) {
@@ -499,6 +408,14 @@ function isAsked(schemaName: string, fields: Fields, path: Path): (name: string)
     const isBallistic = get(own, ['aerodynamics', 'type']) === 'ballistic';
     return (name) => name !== 'reference_area' || !isBallistic || own?.[name] !== undefined;
   }
+  const hasParts = get(draft.value, ['vehicle', 'parts']) !== undefined;
+  const others = (hasParts ? OF_PARTS.without : OF_PARTS.with)[schemaName];
+  if (others) return (name) => !others.includes(name) || own?.[name] !== undefined;
+  if (schemaName === 'Launch') return (name) => own?.site === undefined || !LAUNCH_PLACE.includes(name) || own[name] !== undefined;
+  if (schemaName === 'ProgramSteering') {
+    const asked = ['frame', ...(ANGLES_OF_FRAME[String(own?.frame)] ?? [])];
+    return (name) => asked.includes(name) || own?.[name] !== undefined;
+  }
   // A wind is given by its components, or by its speed and direction.
   if (fields.east && fields.speed) {
     const given = (names: string[]) => names.some((name) => own?.[name] !== undefined);
@@ -507,6 +424,23 @@ function isAsked(schemaName: string, fields: Fields, path: Path): (name: string)
   }
   return () => true;
 }
+
+/** The fields that a vehicle has a use for only with parts, and only without. */
+const OF_PARTS: Record<'with' | 'without', Record<string, string[]>> = {
+  with: {
+    Control: ['steering'],
+    Condition: ['burnout'],
+    Effect: ['ignite', 'shut_down', 'throttle', 'load_limit', 'steer', 'tilt', 'separate'],
+  },
+  without: { Effect: ['mass', 'thrust'] },
+};
+const LAUNCH_PLACE = ['geodetic_latitude', 'longitude', 'geodetic_altitude'];
+/** The angles of a steering program, by its frame. */
+const ANGLES_OF_FRAME: Record<string, string[]> = {
+  launch: ['pitch', 'yaw'],
+  local: ['pitch', 'azimuth'],
+  inertial: ['right_ascension', 'declination'],
+};
 
 function groupOf(fields: Fields, field: Field): string[] {
   const key = field.kind === 'column' ? field.table : 'choice' in field ? field.choice : undefined;
@@ -544,7 +478,7 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
       ))}
     </select>
   );
-  if (field.kind === 'list')
+  if (field.kind === 'list' || field.kind === 'parts')
     return (
       <div class="block">
         {label}
@@ -562,13 +496,15 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
 function swapped(path: Path, from: string, to: string, field: Field): unknown {
   const { [from]: old, ...others } = get(draft.peek(), path) as Record<string, unknown>;
   const start = startOf(field, old);
-  return { ...others, [to]: field.kind === 'number' ? start : exchanged(path, from, to, start, old) };
+  const staysNumber = field.kind === 'number' && typeof old !== 'object';
+  return { ...others, [to]: staysNumber ? start : exchanged(path, from, to, start, old) };
 }
 
 /** What a field begins with that takes another's place. */
 function startOf(field: Field, old: unknown): unknown {
   if (field.kind === 'number') return typeof old === 'number' ? old : '';
   if (field.kind === 'list') return [field.empty];
+  if (field.kind === 'parts') return [{ name: 'vehicle', dry_mass: old }];
   if (field.kind === 'words') return Object.keys(field.words)[0] ?? false;
   return field.kind === 'numbers' ? [] : '';
 }
@@ -617,7 +553,7 @@ function Variant({ field, path, property }: VariantProps) {
   const type = get(draft.value, [...path, 'type']) as string | undefined;
   const kind = kindOf(field.kinds, type);
   const change = (next: string) => {
-    if (path[0] === 'initial_state') void retype(next as State['type']);
+    if (path[0] === 'initial_state') void retype(next as InitialState['type']);
     else put(path, exchanged(path, type ?? '', next, next === '' ? undefined : { type: next }));
   };
   return (
@@ -789,42 +725,89 @@ type ListProps = Omit<ItemProps, 'field'> & { field: Extract<Field, { kind: 'lis
 
 /** A long list is shown so many elements at a time: the page would stand still as long as it makes the forms of thousands. */
 const SHOWN = 100;
+/** So many elements that are told in a line stand open. */
+const OPEN = 2;
 
 function List({ field, path, isBare }: ListProps) {
   const [most, setMost] = useState(SHOWN);
+  const [added, add] = useState(-1);
   const items = (get(draft.value, path) as unknown[] | undefined) ?? [];
   return (
     <div class="list">
       {!isBare && <p class="list-title">{field.label}</p>}
       <Faults path={path} />
-      {items.slice(0, most).map((_, index) => (
-        <div class="list-item" key={`${items.length}-${index}`}>
-          <div class="list-head">
-            <span>
-              {capital(field.one)} {index + 1}
-            </span>
-            <button
-              type="button"
-              onClick={() => {
-                forget();
-                put([...path, index], undefined);
-              }}
-              aria-label={`Remove ${field.one} ${index + 1}`}
-            >
-              Remove
-            </button>
-          </div>
-          <Item field={field.item} path={[...path, index]} isBare />
-        </div>
+      {items.slice(0, most).map((item, index) => (
+        <ListItem
+          key={`${items.length}-${index}`}
+          field={field}
+          path={[...path, index]}
+          told={field.one === 'event' ? eventInWords(item, { own: caseUnit.value, readers: angleUnit.value }) : undefined}
+          isOpen={items.length <= OPEN || index === added}
+        />
       ))}
       {items.length > most && (
         <button type="button" id={idOf(path)} onClick={() => setMost(most + SHOWN)}>
           Show more ({items.length - most} of {items.length} hidden)
         </button>
       )}
-      <button type="button" onClick={() => put(path, [...items, structuredClone(field.empty)])}>
+      <button
+        type="button"
+        onClick={() => {
+          add(items.length);
+          put(path, [...items, structuredClone(field.empty)]);
+        }}
+      >
         Add {/^[aeiou]/.test(field.one) ? 'an' : 'a'} {field.one}
       </button>
     </div>
+  );
+}
+
+interface ListItemProps {
+  field: ListProps['field'];
+  path: Path;
+  /** The element in a line, under which it folds. */
+  told?: string | undefined;
+  isOpen: boolean;
+}
+
+function ListItem({ field, path, told, isOpen }: ListItemProps) {
+  const index = Number(path.at(-1));
+  const name = get(draft.value, [...path, 'name']);
+  const remove = (
+    <button
+      type="button"
+      onClick={() => {
+        forget();
+        put(path, undefined);
+      }}
+      aria-label={`Remove ${field.one} ${index + 1}`}
+    >
+      Remove
+    </button>
+  );
+  if (told === undefined)
+    return (
+      <div class="list-item">
+        <div class="list-head">
+          <span>
+            {capital(field.one)} {index + 1}
+          </span>
+          {remove}
+        </div>
+        <Item field={field.item} path={path} isBare />
+      </div>
+    );
+  return (
+    <details class="list-item" open={isOpen}>
+      <summary>
+        <strong>{typeof name === 'string' && name !== '' ? name : `${capital(field.one)} ${index + 1}`}</strong>{' '}
+        <span class="quiet">{told}</span>
+      </summary>
+      <div class="list-body">
+        <Item field={field.item} path={path} isBare />
+        {remove}
+      </div>
+    </details>
   );
 }

@@ -52,6 +52,7 @@ function faultsOf(value: unknown, field: Field, path: Path): string[] {
     case 'variant':
       return ofObject(value, { type: SINGLE, ...kindOf(field.kinds, get(value, ['type']))?.fields }, path);
     case 'list':
+    case 'parts':
       return ofArray(value, field.item, path);
     case 'matrix':
       return ofArray(value, ROW, path);

@@ -4,23 +4,28 @@ import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
 import { kilometres, number } from '../figures';
-import { at, type Run } from '../flight';
+import { at, type Run, withBodies } from '../flight';
+import { isLaunch, launchAt, launchFrom } from '../form/launch';
 import { bodyIn, isEarth, isSameGround, planetOf } from '../planets';
-import { current, cursor, draft, runs } from '../store';
+import { type ListedSite, loadSites, sites, titleOfSite } from '../sites';
+import { current, cursor, draft, runs, tracks } from '../store';
 import { extent, middleOf, placeAt, ramp, written } from './geography';
+import { siteAt } from './sites';
 import { drawScene, isPlaced, type Scene } from './view';
 import './map.css';
 
 const scene = computed<Scene>(() => {
   const instant = Date.parse(draft.value.epoch ?? '');
   const planet = current.value ? planetOf(current.value) : '';
-  const here = runs.value.filter((run) => isSameGround(planetOf(run), planet));
-  return { runs: here, planet, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
+  const here = tracks.value.filter((run) => isSameGround(planetOf(run), planet));
+  return { runs: here, sites: sites.value, planet, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
 });
 
 /** The ground track, on a map of the planet and on a globe. */
 export default function Maps() {
   const isClose = useSignal(false);
+  const isPicking = useSignal(false);
+  useEffect(loadSites, []);
   const run = current.value;
   if (!run) return null;
   return (
@@ -36,10 +41,21 @@ export default function Maps() {
         >
           Zoom to track
         </button>
+        {isLaunch() && isEarth(planetOf(run)) && (
+          <button
+            type="button"
+            aria-pressed={isPicking.value}
+            onClick={() => {
+              isPicking.value = !isPicking.value;
+            }}
+          >
+            Pick launch place
+          </button>
+        )}
         <Legend run={run} />
       </div>
       <div class="maps">
-        <World isClose={isClose.value} />
+        <World isClose={isClose.value} isPicking={isPicking.value && isLaunch()} />
         <Globe />
       </div>
       <Ground planet={planetOf(run)} />
@@ -106,15 +122,17 @@ function summaryOf(run: Run): string {
   return `from ${written(from)} to ${written(to)}${range}`;
 }
 
-function World({ isClose }: { isClose: boolean }) {
+function World({ isClose, isPicking }: { isClose: boolean; isPicking: boolean }) {
+  const pointed = useSignal<Pointed | null>(null);
   const projection = useRef<GeoProjection>(geoEquirectangular());
   const { canvas } = useCanvas(
     (ctx, width, height, shown) => {
       const flight = shown.runs[0]?.flight;
+      const own = shown.runs.filter(({ id }) => id <= 0);
       // Around the middle of the track, where a pole is a place like others.
       const near = isClose ? geoAzimuthalEquidistant() : geoEquirectangular();
       if (isClose && flight) {
-        const places = flight.columns.time.map((time) => placeAt(flight, time));
+        const places = own.flatMap((run) => run.flight.columns.time.map((time) => placeAt(run.flight, time)));
         const [longitude, latitude] = middleOf(flight);
         near.rotate([-longitude, -latitude]);
         const margin = 40;
@@ -134,17 +152,63 @@ function World({ isClose }: { isClose: boolean }) {
   );
   const run = current.value;
   return (
-    <canvas
-      ref={canvas}
-      class="world"
-      role="img"
-      aria-label={
-        run ? `${isEarth(planetOf(run)) ? 'World map' : `Map of ${bodyIn(planetOf(run))}`} with the track ${summaryOf(run)}` : 'World map'
-      }
-      onPointerMove={(event) => look(projection.current, event)}
-    />
+    <div class="world-frame">
+      <canvas
+        ref={canvas}
+        class={isPicking ? 'world picking' : 'world'}
+        role="img"
+        aria-label={
+          run ? `${isEarth(planetOf(run)) ? 'World map' : `Map of ${bodyIn(planetOf(run))}`} with the track ${summaryOf(run)}` : 'World map'
+        }
+        onPointerMove={(event) => {
+          look(projection.current, event);
+          pointed.value = pointedAt(projection.current, event);
+        }}
+        onPointerLeave={() => {
+          pointed.value = null;
+        }}
+        onClick={(event) => pick(projection.current, event, isPicking)}
+      />
+      {pointed.value && (
+        <span
+          class={pointed.value.isRight ? 'site-name left' : 'site-name'}
+          style={{ left: `${pointed.value.x}px`, top: `${pointed.value.y}px` }}
+        >
+          {titleOfSite(pointed.value.site)}
+        </span>
+      )}
+    </div>
   );
 }
+
+/** A site at which the pointer is, and where that is on the map. */
+interface Pointed {
+  site: ListedSite;
+  x: number;
+  y: number;
+  /** In the right half of the map, where a name has its room to the left. */
+  isRight: boolean;
+}
+
+function pointedAt(projection: GeoProjection, { offsetX, offsetY, currentTarget }: PointerEvent): Pointed | null {
+  const run = current.value;
+  if (!run || !isEarth(planetOf(run))) return null;
+  const site = siteAt(projection, sites.value, [offsetX, offsetY]);
+  return site && { site, x: offsetX, y: offsetY, isRight: offsetX > (currentTarget as HTMLElement).clientWidth / 2 };
+}
+
+/** Puts a launch where the map was clicked: at a site or, where the reader is to pick a place, at any other. */
+function pick(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, isPicking: boolean): void {
+  const run = current.value;
+  if (!run || !isLaunch() || !isEarth(planetOf(run))) return;
+  const site = siteAt(projection, sites.value, [offsetX, offsetY]);
+  const place = projection.invert?.([offsetX, offsetY]);
+  if (site) launchFrom(site.slug);
+  else if (isPicking && place) launchAt(rounded(place[1]), rounded(place[0]));
+}
+
+/** Degrees to some 100 m, which is finer than a pixel. */
+const rounded = (degrees: number) => Number(degrees.toFixed(3));
 
 /** Places half a degree around another, so that the shortest track is not blown up to nothing but itself. */
 function around([longitude, latitude]: [number, number]): [number, number][] {
@@ -247,6 +311,7 @@ function Globe() {
 
 /** What the colours of the track mean. */
 function Legend({ run }: { run: Run }) {
+  if (run.flight.bodies.length > 0) return <BodyLegend run={run} />;
   const [low, high] = extent(run.flight.columns.altitude ?? []);
   return (
     <span class="legend quiet">
@@ -258,6 +323,20 @@ function Legend({ run }: { run: Run }) {
       </span>
       {kilometres(high, 3)} km
     </span>
+  );
+}
+
+/** Which track is whose. */
+function BodyLegend({ run }: { run: Run }) {
+  return (
+    <ul class="legend bodies quiet" aria-label="Tracks">
+      {withBodies(run).map(({ id, label, colour }) => (
+        <li key={id}>
+          <span class={`swatch run-${colour}`} />
+          {id === 0 ? 'Vehicle' : label}
+        </li>
+      ))}
+    </ul>
   );
 }
 

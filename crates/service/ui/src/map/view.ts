@@ -1,14 +1,18 @@
 import { type GeoProjection, geoCircle, geoDistance, geoPath } from 'd3-geo';
 import { colour } from '../colours';
 import { capital } from '../figures';
-import type { Run } from '../flight';
+import { isFlying, type Run } from '../flight';
 import { bodyIn, isEarth } from '../planets';
+import type { ListedSite } from '../sites';
 import { belowSun, graticule, LAND, placeAt, ramp, stretches } from './geography';
+import { drawSites } from './sites';
 
 /** What a map shows. */
 export interface Scene {
-  /** The flights on the planet, the current one first. */
+  /** The flights on the planet, the current one first, then the bodies that left it. */
   runs: Run[];
+  /** What may be named as the place of a launch or a landing. */
+  sites: ListedSite[];
   /** The model of the planet. */
   planet: string;
   /** The instant that is looked at, s. */
@@ -42,10 +46,14 @@ export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjecti
   stroke(graticule(step), colour(onEarth ? 'line' : 'line-strong'), onEarth ? 0.6 : 0.4);
   if (onEarth) drawNight(fill, scene);
   stroke({ type: 'Sphere' }, colour('line-strong'), 1);
+  if (onEarth) drawSites(ctx, projection, scene.sites);
+  // Beside bodies, whose colours tell them apart, the vehicle has a colour of its own too.
+  const isAlone = !scene.runs.some(({ id }) => id < 0);
   for (const run of [...scene.runs].reverse()) {
     const track = stretches(run.flight);
-    if (run.id !== 0) {
-      stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour(`run-${run.colour}`), 1.6);
+    if (run.id !== 0 || !isAlone) {
+      const width = run.id > 0 ? 1.6 : 2.4;
+      stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour(`run-${run.colour}`), width);
       continue;
     }
     stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour('surface'), 5);
@@ -77,16 +85,20 @@ function drawNight(fill: (shape: ReturnType<ReturnType<typeof geoCircle>>, style
   );
 }
 
+/** So many labels stand below each other; further ones are left to the list. */
+const MOST_LABELS = 2;
+
 function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { runs, time }: Scene): void {
   const taken: [number, number][] = [];
+  const nearTo = (point: [number, number]) => taken.filter(([x, y]) => Math.abs(x - point[0]) < 110 && Math.abs(y - point[1]) < 18).length;
   for (const run of runs) {
     if (run.id === 0) {
       const places = run.flight.marks.filter(isPlaced).map((mark) => ({ mark, point: seen(projection, placeAt(run.flight, mark.time)) }));
       // Of labels in each other's way the end has its own, a second goes below its mark, a third is left to the list.
       for (const { mark, point } of [...places].reverse()) {
         if (!point) continue;
-        const near = taken.filter(([x, y]) => Math.abs(x - point[0]) < 110 && Math.abs(y - point[1]) < 18).length;
-        if (near < 2) label(ctx, [point[0], point[1] + 18 * near], mark.label);
+        const near = nearTo(point);
+        if (near < MOST_LABELS) label(ctx, [point[0], point[1] + 18 * near], mark.label);
         taken.push(point);
       }
       for (const { mark, point } of places)
@@ -94,8 +106,14 @@ function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { r
     } else {
       const point = seen(projection, placeAt(run.flight, run.flight.final.time ?? 0));
       if (point) dot(ctx, point, 3.5, colour(`run-${run.colour}`), colour('surface'));
+      if (point && run.id < 0) {
+        const near = nearTo(point);
+        if (near < MOST_LABELS) label(ctx, [point[0], point[1] + 18 * near], run.label);
+        taken.push(point);
+      }
     }
-    const now = time === null ? null : seen(projection, placeAt(run.flight, time));
+    const isThere = time !== null && (run.id >= 0 || isFlying(run.flight, time));
+    const now = isThere ? seen(projection, placeAt(run.flight, time)) : null;
     if (now) dot(ctx, now, 5.5, colour(`run-${run.colour}`), colour('surface'));
   }
 }
@@ -106,7 +124,7 @@ export function isPlaced({ kind, label }: { kind: string; label: string }): bool
 }
 
 /** Where a place is on the screen; null where it is on the far side. */
-function seen(projection: GeoProjection, place: [number, number]): [number, number] | null {
+export function seen(projection: GeoProjection, place: [number, number]): [number, number] | null {
   const clip = projection.clipAngle();
   if (clip) {
     const [lambda, phi] = projection.rotate();

@@ -3,7 +3,7 @@ import { at, type Flight, type Run } from '../flight';
 import { type AngleUnit, type Name, QUANTITIES, scaleOf, unitOf } from '../quantities';
 
 /** How the plots are laid out: as in the thesis, or all against one quantity. */
-export type Layout = 'thesis' | 'time' | 'altitude' | 'speed';
+export type Layout = 'thesis' | 'time' | 'altitude' | 'speed' | 'downrange';
 
 /** What a plot shows: one quantity against another. */
 export interface Axes {
@@ -22,6 +22,8 @@ const OTHERS: Name[] = [
   'heat_load',
   'wall_temperature',
   'mass',
+  'thrust',
+  'throttle',
 ];
 
 /** The quantities that are plotted of a flight of which these are known. */
@@ -32,7 +34,8 @@ export function plotted(known: object, added: Name[]): Name[] {
 /** The columns that plots and maps draw. */
 export function drawn(known: object, added: Name[]): Name[] {
   const placed: Name[] = ['time', 'longitude', 'geodetic_latitude'];
-  return [...placed, ...plotted(known, added)].filter((name, index, all) => all.indexOf(name) === index);
+  const ranged: Name[] = 'downrange' in known ? ['downrange'] : [];
+  return [...placed, ...ranged, ...plotted(known, added)].filter((name, index, all) => all.indexOf(name) === index);
 }
 
 /** The quantities that may be added. */

@@ -4,9 +4,9 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { colour, onTheme } from '../colours';
 import { number } from '../figures';
-import type { Mark, Run } from '../flight';
+import { isFlying, type Mark, type Run } from '../flight';
 import type { AngleUnit, Name } from '../quantities';
-import { angleUnit, current, cursor, runs, theory } from '../store';
+import { angleUnit, current, cursor, theory, tracks } from '../store';
 import { type Axes, type Curve, curveOf, isJoined, nearest, predictedOf, rangeOf, titleOf, valueAt } from './curves';
 
 /** A curve and how it is drawn. */
@@ -26,7 +26,7 @@ export function Plot({ axes, height, unzoom }: { axes: Axes; height: number; unz
     const view = new View(box, axes, height);
     const ends = [
       effect(() => {
-        view.show(runs.value, angleUnit.value);
+        view.show(tracks.value, angleUnit.value);
         around.setAttribute('aria-label', summaryOf(axes, angleUnit.value));
       }),
       effect(() => view.point(cursor.value)),
@@ -218,6 +218,8 @@ class View {
     for (const line of this.lines) this.drawLine(ctx, line);
     const run = this.shown.find(({ id }) => id === 0);
     if (run) for (const mark of run.flight.marks) this.drawMark(ctx, run, mark);
+    for (const body of this.shown.filter(({ id }) => id < 0))
+      for (const mark of body.flight.marks.filter(({ kind }) => kind === 'end')) this.drawMark(ctx, body, mark);
     ctx.restore();
     // Where the curves went, by a zoom or another width, the dots go too.
     this.point(cursor.peek());
@@ -264,24 +266,25 @@ class View {
       ctx.lineTo(x - size * 1.1, y + size * 0.9);
       ctx.closePath();
     }
-    ctx.fillStyle = kind === 'end' ? colour('run-0') : colour('surface');
-    ctx.strokeStyle = colour('run-0');
+    ctx.fillStyle = colour(kind === 'end' ? `run-${run.colour}` : 'surface');
+    ctx.strokeStyle = colour(`run-${run.colour}`);
     ctx.lineWidth = 1.5 * devicePixelRatio;
     ctx.fill();
     ctx.stroke();
   }
 
-  /** Looks at the instant of the current flight that is nearest to the pointer. */
+  /** Looks at the instant of the current flight, or of a body that left it, that is nearest to the pointer. */
   private look(event: PointerEvent): void {
-    const run = this.shown.find(({ id }) => id === 0);
+    const own = this.shown.filter(({ id }) => id <= 0);
     // A mouse that is pressed draws the box to zoom into.
-    if (!run || (event.buttons !== 0 && event.pointerType === 'mouse')) return;
+    if (own.length === 0 || (event.buttons !== 0 && event.pointerType === 'mouse')) return;
     if (this.isStale) this.update();
     const box = this.plot.over.getBoundingClientRect();
-    const { x, y } = curveOf(run.flight, this.axes, this.unit);
+    const curves = own.map((run) => ({ ...curveOf(run.flight, this.axes, this.unit), time: run.flight.columns.time }));
+    const [x, y, time] = [curves.flatMap((curve) => curve.x), curves.flatMap((curve) => curve.y), curves.flatMap((curve) => curve.time)];
     const points = { length: x.length, at: (index: number) => this.position(x[index] as number, y[index] as number, false) };
     const index = nearest(points, event.clientX - box.left, event.clientY - box.top);
-    if (index >= 0) cursor.value = run.flight.columns.time[index] ?? null;
+    if (index >= 0) cursor.value = time[index] ?? null;
   }
 
   /** A dot on every flight at an instant. */
@@ -298,7 +301,8 @@ class View {
       }
       const [x, y] = this.position(valueAt(run, this.axes.x, time ?? 0, this.unit), valueAt(run, this.axes.y, time ?? 0, this.unit), false);
       const { width, height } = this.plot.over.getBoundingClientRect();
-      dot.hidden = !(x >= 0 && y >= 0 && x <= width && y <= height);
+      const isThere = run.id >= 0 || isFlying(run.flight, time ?? 0);
+      dot.hidden = !(isThere && x >= 0 && y >= 0 && x <= width && y <= height);
       dot.style.transform = `translate(${x}px, ${y}px)`;
       dot.style.background = colour(`run-${run.colour}`);
     });

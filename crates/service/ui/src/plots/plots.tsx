@@ -1,10 +1,10 @@
 import { useSignal } from '@preact/signals';
 import { columnOf, number, reading, unitOfLoad } from '../figures';
-import type { Flight } from '../flight';
+import { COLOURS, type Flight, isFlying } from '../flight';
 import { planetOf } from '../planets';
 import { type Name, QUANTITIES, unitOf } from '../quantities';
 import { Scroll } from '../scroll';
-import { added, angleUnit, current, cursor, runs } from '../store';
+import { added, angleUnit, current, cursor, lastEnd, runs, tracks } from '../store';
 import { type Axes, addable, axesOf, curveOf, type Layout, picked, plotted, titleOf, valueAt } from './curves';
 import { Plot } from './plot';
 import './plots.css';
@@ -14,15 +14,20 @@ const LAYOUTS: Record<Layout, string> = {
   time: 'Against time',
   altitude: 'Against altitude',
   speed: 'Against speed',
+  downrange: 'Against downrange',
 };
 const ROWS = 50;
 
 /** The plots of all flights that are shown, linked by one instant. */
 export function Plots() {
-  const layout = useSignal<Layout>('thesis');
+  const chosen = useSignal<Layout | null>(null);
   const unzoom = useSignal(0);
   const flight = current.value?.flight;
   if (!flight) return null;
+  // A launch, or a vehicle that loses parts, passes the same altitude more than once.
+  const byTime = current.value?.case.initial_state.type === 'launch' || flight.bodies.length > 0;
+  const layout = chosen.value ?? (byTime ? 'time' : 'thesis');
+  const hasRange = flight.columns.downrange !== undefined;
   const names = plotted(flight.final, added.value);
   const more = addable(flight.final, added.value);
   return (
@@ -31,16 +36,18 @@ export function Plots() {
         <h2>Plots</h2>
         <select
           aria-label="Plot layout"
-          value={layout.value}
+          value={layout}
           onChange={(event) => {
-            layout.value = event.currentTarget.value as Layout;
+            chosen.value = event.currentTarget.value as Layout;
           }}
         >
-          {Object.entries(LAYOUTS).map(([name, label]) => (
-            <option key={name} value={name}>
-              {label}
-            </option>
-          ))}
+          {Object.entries(LAYOUTS).map(([name, label]) =>
+            name === 'downrange' && !hasRange ? null : (
+              <option key={name} value={name}>
+                {label}
+              </option>
+            ),
+          )}
         </select>
         <select
           aria-label="Add a plot"
@@ -70,10 +77,11 @@ export function Plots() {
       <Instant flight={flight} />
       <div class="plot-grid">
         <Card axes={{ x: 'speed', y: 'altitude' }} isLarge unzoom={unzoom} />
+        {byTime && hasRange && <Card axes={{ x: 'downrange', y: 'altitude' }} isLarge unzoom={unzoom} />}
         {names.map((name) => (
           <Card
             key={name}
-            axes={axesOf(name, layout.value)}
+            axes={axesOf(name, layout)}
             unzoom={unzoom}
             onRemove={
               added.value.includes(name)
@@ -101,7 +109,7 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
   return (
     <div class={isLarge ? 'plot-card large' : 'plot-card'}>
       <div class="plot-head">
-        <h3>{isLarge ? `${titleHere(axes.y)}, against speed` : titleHere(axes.y)}</h3>
+        <h3>{isLarge ? `${titleHere(axes.y)}, against ${QUANTITIES[axes.x].label.toLowerCase()}` : titleHere(axes.y)}</h3>
         <Readings axes={axes} />
         {onRemove && (
           <button type="button" class="small" onClick={onRemove} aria-label={`Remove plot: ${QUANTITIES[axes.y].label}`}>
@@ -124,13 +132,15 @@ function titleHere(name: Name): string {
 /** The plotted quantity of every flight at the instant that is looked at. */
 function Readings({ axes }: { axes: Axes }) {
   const time = cursor.value;
+  // Of more bodies than there are colours the first.
+  const told = tracks.value.filter(({ id }) => id >= -COLOURS);
   return (
     <span class="readings">
-      {runs.value.map((run) => {
-        const isOver = time === null || time > (run.flight.final.time ?? 0);
+      {told.map((run) => {
+        const isOver = time === null || !isFlying(run.flight, time);
         return (
           <span key={run.id} class="reading" title={run.id === 0 ? 'Current flight' : run.label}>
-            {runs.value.length > 1 && <span class={`swatch run-${run.colour}`} />}
+            {told.length > 1 && <span class={`swatch run-${run.colour}`} />}
             <span style={{ color: `var(--run-${run.colour})` }}>{isOver ? '–' : reading(valueAt(run, axes.y, time, angleUnit.value))}</span>
           </span>
         );
@@ -145,8 +155,9 @@ const READ: Name[] = ['altitude', 'speed'];
 function Instant({ flight }: { flight: Flight }) {
   const run = current.value;
   const unit = angleUnit.value;
-  const end = flight.final.time ?? 0;
+  const end = lastEnd.value;
   const time = cursor.value === null ? null : Math.min(cursor.value, end);
+  const isOver = time !== null && !isFlying(flight, time);
   return (
     <div class="instant">
       <label for="instant">Time</label>
@@ -170,7 +181,10 @@ function Instant({ flight }: { flight: Flight }) {
           ? 'Point at a plot to read values; drag to zoom'
           : [
               `${reading(time)} s`,
-              ...READ.map((name) => `${QUANTITIES[name].label} ${reading(valueAt(run, name, time, unit))} ${unitOf(name, unit)}`),
+              ...(isOver ? ['vehicle: ended'] : []),
+              ...(isOver ? [] : READ).map(
+                (name) => `${QUANTITIES[name].label} ${reading(valueAt(run, name, time, unit))} ${unitOf(name, unit)}`,
+              ),
             ].join(' · ')}
       </span>
     </div>

@@ -133,7 +133,7 @@ describe.each(Object.entries(CASES))('%s', (name, typed) => {
 
   it.each(Object.keys(expected) as Model[])('is converted as its reference on %s', async (model) => {
     const planet = { model, shape };
-    const { planet_relative: found, orbital_elements: elements } = await converted(typed.initial_state, planet);
+    const { planet_relative: found, orbital_elements: elements } = await converted(typed.initial_state as State, planet);
     const start = expected[model].initial_state;
     expect(apart({ ...found, radius: found.radius ?? Number.NaN }, start)).toBeLessThan(1e-3);
     expect(Math.abs(found.speed / start.speed - 1)).toBeLessThan(1e-6);
