@@ -232,6 +232,8 @@ async fn schema_and_service_refuse_the_same_numbers() {
         (json!({"trajectory": true}), "a trajectory that is true"),
         (json!({"trajectory": false, "columns": ["time"]}), "columns of no trajectory"),
         (json!({"count": 2, "columns": []}), "no columns"),
+        (json!({"count": 2, "bodies": "some"}), "an unknown output of bodies"),
+        (json!({"count": 2, "interval": 1, "bodies": "none"}), "bodies and two ways of output"),
         (json!({"count": 2, "columns": ["time", "time"]}), "a column twice"),
         (json!({"count": 2, "columns": ["times"]}), "an unknown column"),
         (json!({"count": 2, "interval": 1, "columns": ["time"]}), "columns and two ways of output"),
@@ -380,6 +382,7 @@ async fn schema_and_service_ask_the_same_of_the_case_of_a_theory() {
             ("/density_factor", json!(0)),
             ("/output", json!({"trajectory": false})),
             ("/output", json!({"count": 2, "columns": ["time"]})),
+            ("/output", json!({"count": 2, "sites": true})),
         ] {
             let request = with(&theory, pointer, value.clone());
             agreement.refused("/analytic", &request, &format!("{solution} with {value} at {pointer}")).await;

@@ -323,3 +323,48 @@ async fn bodies_have_names_of_their_own() {
     // That of the case is none of them.
     good_answer(&steady.service, "/simulate", &with(&launch(), nested, "launch")).await;
 }
+
+#[tokio::test]
+async fn the_site_nearest_to_the_end_is_told() {
+    let service = Service::new();
+    let sites = service.get("/sites").await.json();
+    let sites = sites["sites"].as_array().unwrap();
+    let case = with(&launch(), "/output/sites", true);
+    let answer = fly(&case).await;
+    let turned = fly(&with(&with(&launch(), "/stop/time", 1), "/output/sites", true)).await;
+    let bodies = answer["bodies"].as_array().unwrap();
+    for flight in [&answer, &turned, &bodies[0], &bodies[1]] {
+        let found = &flight["nearest_site"];
+        let end = |name: &str| number(&flight["final_state"][name]).to_radians();
+        let [longitude, latitude] = ["longitude", "geodetic_latitude"].map(end);
+        // By the haversine of geodetic latitudes, which differ by a fifth of a degree from geocentric ones.
+        let haversine = |site: &Value| {
+            let of = |name: &str| number(&site[name]).to_radians();
+            let (there, across) = (of("geodetic_latitude"), (longitude - of("longitude")) / 2.0);
+            let square = ((latitude - there) / 2.0).sin().powi(2) + latitude.cos() * there.cos() * across.sin().powi(2);
+            2.0 * 6_378_137.0 * square.sqrt().asin()
+        };
+        let nearest = sites.iter().min_by(|one, other| haversine(one).total_cmp(&haversine(other))).unwrap();
+        assert_eq!(found["slug"], nearest["slug"]);
+        check::relative("distance", number(&found["distance"]), haversine(nearest), 7e-3);
+        let there = |name: &str| number(&nearest[name]).to_radians();
+        let (other, turn) = (there("geodetic_latitude"), longitude - there("longitude"));
+        let east = turn.sin() * latitude.cos();
+        let north = other.cos() * latitude.sin() - other.sin() * latitude.cos() * turn.cos();
+        let azimuth = east.atan2(north).to_degrees().rem_euclid(360.0);
+        check::near("azimuth", number(&found["azimuth"]), azimuth, 0.4);
+    }
+    assert_eq!(fly(&launch()).await.get("nearest_site"), None);
+    let steady = Steady::new().await;
+    let mars = with_all(
+        &super::requests::capsule(),
+        [("/planet", json!({"model": "mars"})), ("/output", json!({"sites": true}))],
+    );
+    steady
+        .refused_at(
+            "/simulate",
+            &mars,
+            &[("/output/sites", "must be false or absent on a planet other than the Earth")],
+        )
+        .await;
+}

@@ -265,6 +265,8 @@ fn of_model(name: &str) -> (&'static str, &'static [Row]) {
             &[("/against", Required, NameOrObject), ("/against/since", Required, Text), ("/at", Required, Numbers)],
         ),
         "columns" => ("/output", &[("/columns", Optional, Names)]),
+        "no bodies" => ("/output", &[("/bodies", Optional, Name)]),
+        "nearest site" => ("/output", &[("/sites", Optional, Boolean)]),
         "heating" => (
             "/heating",
             &[
@@ -642,7 +644,10 @@ impl Kind {
     /// Values of types that the field does not hold.
     pub(crate) fn mistyped(self) -> Vec<Value> {
         let mut wrong = if matches!(self, NumberOrNull(_)) { vec![] } else { vec![json!(null)] };
-        let number = matches!(self, Number(_) | NumberOrNull(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime);
+        let number = matches!(
+            self,
+            Number(_) | NumberOrNull(_) | NumberOrNumbers(_) | Angle(_) | Command(_) | Whole | SiderealTime
+        );
         if !number {
             wrong.push(json!(13));
         }

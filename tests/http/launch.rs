@@ -107,8 +107,11 @@ async fn names_are_those_of_parts_all_at_once() {
         &launcher(),
         [
             ("/vehicle/parts", json!(many)),
-            ("/events", json!([{"when": condition("time", "rises_through", 1.0), "then": {"separate": [
-                {"name": "a", "parts": ["part"], "reference_area": 1, "aerodynamics": {"type": "constant", "drag_coefficient": 1}}]}}])),
+            (
+                "/events",
+                json!([{"when": condition("time", "rises_through", 1.0), "then": {"separate": [
+                {"name": "a", "parts": ["part"], "reference_area": 1, "aerodynamics": {"type": "constant", "drag_coefficient": 1}}]}}]),
+            ),
         ],
     );
     let expected = [("/events/0/then/separate/0/parts/0", "\"part 9\" and 20 more), got \"part\"")];
@@ -119,7 +122,8 @@ async fn names_are_those_of_parts_all_at_once() {
 async fn a_part_leaves_once_and_one_remains() {
     let steady = Steady::new().await;
     let constant = json!({"type": "constant", "drag_coefficient": 1});
-    let together = |parts: Value| json!([{"name": "all", "parts": parts, "reference_area": 1, "aerodynamics": constant}]);
+    let together =
+        |parts: Value| json!([{"name": "all", "parts": parts, "reference_area": 1, "aerodynamics": constant}]);
     for (parts, pointer, phrase) in [
         (json!(["fairing", "first"]), "/parts/1", "must be a part that is separated once: event 3 separates it"),
         (json!(["fairing", "fairing"]), "/parts/1", "must be a part that is separated once: event 5 separates it"),
@@ -148,7 +152,8 @@ async fn an_engine_is_lit_once_unless_it_is_shut_down() {
     steady.refused_at("/simulate", &again, &[("/events/4/then/ignite/0", phrase)]).await;
     let at_once = but("/events/0/then/ignite", json!(["first", "booster", "first"]));
     steady.refused_at("/simulate", &at_once, &[("/events/0/then/ignite/2", phrase)]).await;
-    let mut relit = with_all(&launcher(), [("/stop/time", json!(20)), ("/events/4/when", json!({"event": "off", "delay": 2}))]);
+    let mut relit =
+        with_all(&launcher(), [("/stop/time", json!(20)), ("/events/4/when", json!({"event": "off", "delay": 2}))]);
     relit["events"][4]["then"] = json!({"ignite": ["first"]});
     let off = json!({"name": "off", "when": condition("time", "rises_through", 5.0), "then": {"shut_down": ["first"]}});
     relit["events"].as_array_mut().unwrap().push(off);
@@ -168,37 +173,88 @@ async fn parts_have_masses_and_engines_that_fit() {
     for (pointer, value, fault, phrase) in [
         (part(4, "dry_mass"), json!(0), part(4, "dry_mass"), "must be greater than 0: the part has no propellant"),
         (part(4, "propellant"), json!(5), part(4, "propellant"), "must be 0: the part has no engine to burn it"),
-        (part(0, "engine/thrust/sea_level"), json!(250_001), part(0, "engine/thrust/sea_level"),
-            "must be at most the thrust in vacuum, 250000 N, got 250001"),
-        (part(0, "engine/exit_area"), json!(0.3), part(0, "engine/exit_area"),
-            "must not be given together with thrust/sea_level, which defines it"),
-        (part(0, "engine/thrust/vacuum"), json!([2, 1]), part(0, "engine/thrust/vacuum"),
-            "must be a number without \"type\": \"table\", got an array"),
-        (part(0, "engine/thrust/time"), json!([0, 1]), part(0, "engine/thrust/time"),
-            "must be omitted without \"type\": \"table\""),
+        (
+            part(0, "engine/thrust/sea_level"),
+            json!(250_001),
+            part(0, "engine/thrust/sea_level"),
+            "must be at most the thrust in vacuum, 250000 N, got 250001",
+        ),
+        (
+            part(0, "engine/exit_area"),
+            json!(0.3),
+            part(0, "engine/exit_area"),
+            "must not be given together with thrust/sea_level, which defines it",
+        ),
+        (
+            part(0, "engine/thrust/vacuum"),
+            json!([2, 1]),
+            part(0, "engine/thrust/vacuum"),
+            "must be a number without \"type\": \"table\", got an array",
+        ),
+        (
+            part(0, "engine/thrust/time"),
+            json!([0, 1]),
+            part(0, "engine/thrust/time"),
+            "must be omitted without \"type\": \"table\"",
+        ),
         (part(0, "engine/thrust/type"), json!("constant"), part(0, "engine/thrust/type"), "must be one of table"),
-        (part(1, "engine/thrust/time"), json!([0.1, 0.5, 20, 22]), part(1, "engine/thrust/time/0"),
-            "must be 0, the ignition, got 0.1"),
-        (part(1, "engine/thrust/time"), json!([0, 5, 5, 22]), part(1, "engine/thrust/time/2"),
-            "must be greater than the"),
-        (part(1, "engine/thrust/time"), json!([0, 5, 22]), part(1, "engine/thrust/vacuum"),
-            "must have as many entries as time, 3, got 4"),
+        (
+            part(1, "engine/thrust/time"),
+            json!([0.1, 0.5, 20, 22]),
+            part(1, "engine/thrust/time/0"),
+            "must be 0, the ignition, got 0.1",
+        ),
+        (
+            part(1, "engine/thrust/time"),
+            json!([0, 5, 5, 22]),
+            part(1, "engine/thrust/time/2"),
+            "must be greater than the",
+        ),
+        (
+            part(1, "engine/thrust/time"),
+            json!([0, 5, 22]),
+            part(1, "engine/thrust/vacuum"),
+            "must have as many entries as time, 3, got 4",
+        ),
         (part(1, "engine/thrust/time"), json!([0]), part(1, "engine/thrust/time"), "must have "),
-        (part(1, "engine/thrust/vacuum"), json!(75_000), part(1, "engine/thrust/vacuum"),
-            "must be an array of numbers for a table, got a number"),
-        (part(1, "engine/thrust/sea_level"), json!(1), part(1, "engine/thrust/sea_level"),
-            "must be omitted for a table; give exit_area"),
+        (
+            part(1, "engine/thrust/vacuum"),
+            json!(75_000),
+            part(1, "engine/thrust/vacuum"),
+            "must be an array of numbers for a table, got a number",
+        ),
+        (
+            part(1, "engine/thrust/sea_level"),
+            json!(1),
+            part(1, "engine/thrust/sea_level"),
+            "must be omitted for a table; give exit_area",
+        ),
         (part(1, "reference_area"), json!(1e308), part(1, "reference_area"), "must be finite when multiplied by count"),
-        (part(1, "dry_mass"), json!(1e308), "/vehicle/parts".to_owned(), "must have a total mass that is a finite number"),
-        ("/vehicle/mass".to_owned(), json!(5), "/vehicle".to_owned(), "must have exactly one of mass, parts, got mass and parts"),
+        (
+            part(1, "dry_mass"),
+            json!(1e308),
+            "/vehicle/parts".to_owned(),
+            "must have a total mass that is a finite number",
+        ),
+        (
+            "/vehicle/mass".to_owned(),
+            json!(5),
+            "/vehicle".to_owned(),
+            "must have exactly one of mass, parts, got mass and parts",
+        ),
     ] {
         let also_type = pointer.ends_with("thrust/type");
         let request = but(&pointer, value.clone());
         let mut expected = vec![(fault.as_str(), phrase)];
-        let [vacuum, sea_level, time] = ["vacuum", "sea_level", "time"].map(|field| part(0, &format!("engine/thrust/{field}")));
+        let [vacuum, sea_level, time] =
+            ["vacuum", "sea_level", "time"].map(|field| part(0, &format!("engine/thrust/{field}")));
         if also_type {
             // It is taken for a table, since it has a type.
-            expected.extend([(vacuum.as_str(), "for a table"), (&sea_level, "for a table"), (&time, "is required for a table")]);
+            expected.extend([
+                (vacuum.as_str(), "for a table"),
+                (&sea_level, "for a table"),
+                (&time, "is required for a table"),
+            ]);
         }
         steady.refused_at("/simulate", &request, &expected).await;
     }
@@ -215,12 +271,14 @@ async fn parts_have_masses_and_engines_that_fit() {
 async fn an_exit_area_needs_a_pressure() {
     let steady = Steady::new().await;
     let constant = json!({"type": "constant", "drag_coefficient": 0.4});
-    let request = with_all(&launcher(), [("/atmosphere", json!({"type": "exponential"})), ("/vehicle/aerodynamics", constant)]);
+    let request =
+        with_all(&launcher(), [("/atmosphere", json!({"type": "exponential"})), ("/vehicle/aerodynamics", constant)]);
     let phrase = "requires the pressure of the air: the atmosphere must be standard, us76 or nrlmsise00, or a table with pressure";
     let expected =
         [("/vehicle/parts/0/engine/thrust/sea_level", phrase), ("/vehicle/parts/1/engine/exit_area", phrase)];
     steady.refused_at("/simulate", &request, &expected).await;
-    let request = without(&with(&request, "/vehicle/parts/1/engine/exit_area", 0), "/vehicle/parts/0/engine/thrust/sea_level");
+    let request =
+        without(&with(&request, "/vehicle/parts/1/engine/exit_area", 0), "/vehicle/parts/0/engine/thrust/sea_level");
     good_answer(&steady.service, "/simulate", &request).await;
 }
 
@@ -262,16 +320,35 @@ async fn angles_of_a_steering_are_those_of_its_frame() {
     let steering = |fields: Value| but("/control", json!({"steering": fields}));
     let at = |name: &str| format!("/control/steering{name}");
     for (fields, faults) in [
-        (json!({"type": "program", "frame": "launch", "pitch": 1, "azimuth": 2}),
-            vec![("/azimuth", "is not a field here; the fields are type, frame, pitch, yaw")]),
+        (
+            json!({"type": "program", "frame": "launch", "pitch": 1, "azimuth": 2}),
+            vec![("/azimuth", "is not a field here; the fields are type, frame, pitch, yaw")],
+        ),
         (json!({"type": "program", "frame": "launch"}), vec![("/pitch", "is required")]),
-        (json!({"type": "program", "frame": "local", "pitch": 1, "yaw": 1}),
-            vec![("/azimuth", "is required"), ("/yaw", "is not a field here")]),
-        (json!({"type": "program", "frame": "inertial", "pitch": 1, "declination": 500}),
-            vec![("/right_ascension", "is required"), ("/pitch", "is not a field here"), ("/declination", "must be between -360 and 360")]),
-        (json!({"type": "program", "pitch": 1}), vec![("/frame", "is required; it must be one of launch, local, inertial")]),
-        (json!({"type": "programme", "pitch": 1}), vec![("/type", "must be one of vertical, velocity, program, linear_tangent")]),
-        (json!({"type": "linear_tangent", "a": "1"}), vec![("/a", "must be a number, got a string"), ("/b", "is required")]),
+        (
+            json!({"type": "program", "frame": "local", "pitch": 1, "yaw": 1}),
+            vec![("/azimuth", "is required"), ("/yaw", "is not a field here")],
+        ),
+        (
+            json!({"type": "program", "frame": "inertial", "pitch": 1, "declination": 500}),
+            vec![
+                ("/right_ascension", "is required"),
+                ("/pitch", "is not a field here"),
+                ("/declination", "must be between -360 and 360"),
+            ],
+        ),
+        (
+            json!({"type": "program", "pitch": 1}),
+            vec![("/frame", "is required; it must be one of launch, local, inertial")],
+        ),
+        (
+            json!({"type": "programme", "pitch": 1}),
+            vec![("/type", "must be one of vertical, velocity, program, linear_tangent")],
+        ),
+        (
+            json!({"type": "linear_tangent", "a": "1"}),
+            vec![("/a", "must be a number, got a string"), ("/b", "is required")],
+        ),
         (json!({"type": "vertical", "pitch": 3}), vec![("/pitch", "is not a field here; the fields are type")]),
     ] {
         let faults: Vec<_> = faults.into_iter().map(|(name, phrase)| (at(name), phrase)).collect();
@@ -294,7 +371,10 @@ async fn angles_of_a_steering_are_those_of_its_frame() {
         &launcher(),
         [
             ("/control/steering", json!({"type": "program", "frame": "local", "pitch": 80, "azimuth": since("main")})),
-            ("/events/4/then/steer", json!({"type": "program", "frame": "inertial", "right_ascension": since("mane"), "declination": 1})),
+            (
+                "/events/4/then/steer",
+                json!({"type": "program", "frame": "inertial", "right_ascension": since("mane"), "declination": 1}),
+            ),
         ],
     );
     let unknown = "must be the name of an event of the case, got ";
@@ -308,7 +388,10 @@ async fn angles_of_a_steering_are_those_of_its_frame() {
         [
             ("/control/steering/azimuth", schedule(json!("mach"))),
             ("/events/4/then/steer/right_ascension", schedule(json!("mach"))),
-            ("/atmosphere", json!({"type": "table", "altitude": [0, 1e5], "density": [1, 1e-6], "pressure": [1e5, 0.1]})),
+            (
+                "/atmosphere",
+                json!({"type": "table", "altitude": [0, 1e5], "density": [1, 1e-6], "pressure": [1e5, 0.1]}),
+            ),
         ],
     );
     let phrase = "requires a Mach number";
@@ -334,19 +417,32 @@ async fn a_launch_is_from_a_site_or_from_a_place() {
         (json!({"site": "mahia", "speed": 3}), "/speed", "is not a field here"),
         (json!({"geodetic_latitude": 3}), "/longitude", "is required"),
         (json!({"geodetic_latitude": 93, "longitude": 0}), "/geodetic_latitude", "must be between -90 and 90"),
-        (json!({"site": "mahia_2"}), "/site", "must be the slug of a site of GET /sites, such as \"mahia\", got \"mahia_2\""),
+        (
+            json!({"site": "mahia_2"}),
+            "/site",
+            "must be the slug of a site of GET /sites, such as \"mahia\", got \"mahia_2\"",
+        ),
         (json!({"site": "Mahia"}), "/site", "such as \"mahia\", got \"Mahia\""),
         (json!({"site": "nowhere"}), "/site", "must be the slug of a site of GET /sites, got \"nowhere\""),
         (json!({"site": 3}), "/site", "must be a string, got a number"),
         (json!({"site": "mahia", "hold_down": 1}), "/hold_down", "must be true or false"),
         (json!({"site": "mahia", "azimuth": 361}), "/azimuth", "must be between -360 and 360"),
-        (json!({"geodetic_latitude": 3, "longitude": 3, "geodetic_altitude": -10}), "", "initial altitude is below the stop altitude"),
-        (json!({"geodetic_latitude": 3, "longitude": 3, "geodetic_altitude": -7e6}), "/geodetic_altitude", "above the planet's centre"),
+        (
+            json!({"geodetic_latitude": 3, "longitude": 3, "geodetic_altitude": -10}),
+            "",
+            "initial altitude is below the stop altitude",
+        ),
+        (
+            json!({"geodetic_latitude": 3, "longitude": 3, "geodetic_altitude": -7e6}),
+            "/geodetic_altitude",
+            "above the planet's centre",
+        ),
     ] {
         steady.refused_at("/simulate", &launch(fields), &[(&at(name), phrase)]).await;
     }
     let convert = with(&conversion("ecef"), "/state", json!({"type": "launch", "site": "mahia"}));
-    let kinds = "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, inertial_flight_path, got \"launch\"";
+    let kinds =
+        "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, inertial_flight_path, got \"launch\"";
     steady.refused_at("/convert", &convert, &[("/state/type", kinds)]).await;
 }
 
@@ -370,7 +466,9 @@ async fn the_event_of_a_launch_is_no_other() {
     steady.refused_at("/simulate", &twice, &[("/events/4/when/event", phrase)]).await;
     let circle = but("/events/3/when", json!({"event": "second ignition"}));
     let phrase = "must not be an event that waits for itself";
-    steady.refused_at("/simulate", &circle, &[("/events/3/when/event", phrase), ("/events/4/when/event", phrase)]).await;
+    steady
+        .refused_at("/simulate", &circle, &[("/events/3/when/event", phrase), ("/events/4/when/event", phrase)])
+        .await;
     for (given, got) in [
         (json!({"burnout": "first", "event": "staging"}), "got event and burnout"),
         (json!({"burnout": "first", "quantity": "time", "rises_through": 1}), "got quantity and burnout"),
@@ -380,7 +478,9 @@ async fn the_event_of_a_launch_is_no_other() {
         steady.refused_at("/simulate", &but("/events/3/when", given), &[("/events/3/when", &phrase)]).await;
     }
     let falls = but("/events/3/when", json!({"burnout": "first", "falls_through": 3}));
-    steady.refused_at("/simulate", &falls, &[("/events/3/when/falls_through", "is not a field here; the fields are ")]).await;
+    steady
+        .refused_at("/simulate", &falls, &[("/events/3/when/falls_through", "is not a field here; the fields are ")])
+        .await;
 }
 
 /// A body with one part, that may stand in any of the launcher's events.
@@ -406,9 +506,17 @@ async fn there_are_64_bodies_at_most() {
     let phrase = "must separate at most 64 bodies in all, with those that separate from bodies, got 6400";
     steady.refused_at("/simulate", &request, &[("/events/99/then/separate", phrase)]).await;
     let parts: Vec<_> = (0..65).map(|index| json!({"name": index.to_string(), "dry_mass": 1})).collect();
-    let bodies: Vec<_> = (0..64).map(|index| with_all(&payload(), [("/parts", json!([index.to_string()]))])).collect();
+    let body = |index: i32| {
+        with_all(&payload(), [("/name", json!(index.to_string())), ("/parts", json!([index.to_string()]))])
+    };
+    let bodies: Vec<_> = (0..64).map(body).collect();
     let events = json!([{"when": condition("time", "rises_through", 1.0), "then": {"separate": bodies}}]);
-    good_answer(&steady.service, "/simulate", &with_all(&launcher(), [("/vehicle/parts", json!(parts)), ("/events", events)])).await;
+    good_answer(
+        &steady.service,
+        "/simulate",
+        &with_all(&launcher(), [("/vehicle/parts", json!(parts)), ("/events", events)]),
+    )
+    .await;
 }
 
 #[tokio::test]
@@ -443,9 +551,15 @@ async fn faults_within_bodies_have_the_pointers_of_their_fields() {
     let request = with_all(
         &launcher(),
         [
-            (&*at("/events"), json!([inner, {"when": condition("heat_flux", "rises_through", 1.0), "then": {"mass": 3, "release": ["drogue"]}}])),
-            (&at("/control"), json!({"steering": {"type": "vertical"}, "angle_of_attack": 3,
-                "bank_angle": {"type": "schedule", "against": {"since": "staging"}, "at": [0], "value": [1]}})),
+            (
+                &*at("/events"),
+                json!([inner, {"when": condition("heat_flux", "rises_through", 1.0), "then": {"mass": 3, "release": ["drogue"]}}]),
+            ),
+            (
+                &at("/control"),
+                json!({"steering": {"type": "vertical"}, "angle_of_attack": 3,
+                "bank_angle": {"type": "schedule", "against": {"since": "staging"}, "at": [0], "value": [1]}}),
+            ),
             (&at("/stop"), json!({"ceiling": -5, "when": [{"event": "staging"}]})),
         ],
     );
@@ -453,7 +567,10 @@ async fn faults_within_bodies_have_the_pointers_of_their_fields() {
     let expected = [
         ("/events/0/when/event", unknown),
         ("/events/0/then/separate/0/parts/0", "must be the name of a part (\"first\"), got \"payload\""),
-        ("/events/0/then/separate/0/stop/when/0/burnout", "must be the name of a part with an engine (there is none), got \"first\""),
+        (
+            "/events/0/then/separate/0/stop/when/0/burnout",
+            "must be the name of a part with an engine (there is none), got \"first\"",
+        ),
         ("/events/1/when/quantity", "requires heating"),
         ("/events/1/then/mass", "must be omitted"),
         ("/events/1/then/release/0", "must be the name of a parachute that an event deploys"),
@@ -482,7 +599,10 @@ async fn faults_within_bodies_have_the_pointers_of_their_fields() {
         ("/push/value", "must be between -1000000 and 1000000"),
         ("/stop/time", "must be greater than 0"),
         ("/parts/0", "must be a string, got a number"),
-        ("/color", "is not a field here; the fields are name, parts, push, reference_area, aerodynamics, events, control, stop"),
+        (
+            "/color",
+            "is not a field here; the fields are name, parts, push, reference_area, aerodynamics, events, control, stop",
+        ),
     ];
     let expected = expected.map(|(pointer, phrase)| (at(pointer), phrase));
     let expected: Vec<_> = expected.iter().map(|(pointer, phrase)| (pointer.as_str(), *phrase)).collect();
@@ -520,7 +640,12 @@ async fn an_inertial_direction_needs_the_angle_of_the_planet_wherever_it_stands(
     let launch = json!({"type": "launch", "geodetic_latitude": -39, "longitude": 178, "azimuth": 100});
     let base = with_all(
         &launcher(),
-        [("/planet", planet), ("/initial_state", launch), ("/epoch", json!("2026-01-01T00:00:00Z")), ("/stop/time", json!(1))],
+        [
+            ("/planet", planet),
+            ("/initial_state", launch),
+            ("/epoch", json!("2026-01-01T00:00:00Z")),
+            ("/stop/time", json!(1)),
+        ],
     );
     good_answer(&steady.service, "/simulate", &base).await;
     let push = json!({"along": {"frame": "inertial", "direction": [1, 0, 0]}, "value": 3});
@@ -546,7 +671,10 @@ async fn bodies_within_bodies_end_where_json_does() {
         let mut events = json!([]);
         for index in (0..depth).rev() {
             let parts: Vec<_> = (index..depth).map(|index| index.to_string()).collect();
-            let body = with_all(&payload(), [("/parts", json!(parts)), ("/events", events)]);
+            let body = with_all(
+                &payload(),
+                [("/name", json!(index.to_string())), ("/parts", json!(parts)), ("/events", events)],
+            );
             let time = condition("time", "rises_through", 1.0 + f64::from(u16::try_from(index).unwrap()));
             events = json!([{"when": time, "then": {"separate": [body]}}]);
         }
@@ -648,7 +776,11 @@ async fn numbers_of_a_launch_have_derivatives() {
             let difference = (above - below) / (2.0 * step);
             // The differences bend, and flights at 1e-12 are noisy.
             let allowed = 2e-3 * difference.abs() + 1e-8 * scale / step;
-            assert!((slope - difference).abs() <= allowed, "{} by {pointer}: {slope}, by differences {difference}", of[row]);
+            assert!(
+                (slope - difference).abs() <= allowed,
+                "{} by {pointer}: {slope}, by differences {difference}",
+                of[row]
+            );
         }
     }
 }

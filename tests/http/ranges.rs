@@ -16,7 +16,9 @@ fn numbers() -> Vec<(Field, Range)> {
     let mut numbers = Vec::new();
     for mut field in fields() {
         match field.kind {
-            Kind::Number(range) | Kind::NumberOrNull(range) | Kind::NumberOrNumbers(range) => numbers.push((field, range)),
+            Kind::Number(range) | Kind::NumberOrNull(range) | Kind::NumberOrNumbers(range) => {
+                numbers.push((field, range))
+            }
             Kind::Angle(range) | Kind::Command(range) => {
                 field.request = with(&field.request, "/angle_unit", "deg");
                 numbers.push((field, range.in_degrees()));

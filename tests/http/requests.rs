@@ -200,6 +200,8 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
             ),
         ),
         ("columns", with(&flight(), "/output/columns", json!(["time", "altitude"]))),
+        ("no bodies", with(&flight(), "/output/bodies", "none")),
+        ("nearest site", with(&flight(), "/output/sites", true)),
         (
             "heating",
             with(
@@ -222,10 +224,15 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
                 json!([event("time", "rises_through", 0.5, &json!({"thrust": inertial_thrust()}))]),
             ),
         ),
-        ("launch from a site", launch(&json!({"site": "mahia", "azimuth": 1.7, "hold_down": true, "sidereal_time": 100}))),
+        (
+            "launch from a site",
+            launch(&json!({"site": "mahia", "azimuth": 1.7, "hold_down": true, "sidereal_time": 100})),
+        ),
         (
             "launch from a place",
-            launch(&json!({"geodetic_latitude": 0.5, "longitude": -0.7, "geodetic_altitude": 10, "sidereal_time": 100})),
+            launch(
+                &json!({"geodetic_latitude": 0.5, "longitude": -0.7, "geodetic_altitude": 10, "sidereal_time": 100}),
+            ),
         ),
         ("parts", staged(&[])),
         ("engine at sea level", staged(&[("/vehicle/parts/2/engine/thrust/vacuum", json!(1e12))])),
@@ -237,7 +244,10 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
         ),
         (
             "program by the horizon",
-            staged(&[("/control/steering", json!({"type": "program", "frame": "local", "pitch": 0.9, "azimuth": 1.1}))]),
+            staged(&[(
+                "/control/steering",
+                json!({"type": "program", "frame": "local", "pitch": 0.9, "azimuth": 1.1}),
+            )]),
         ),
         (
             "program by the stars",
@@ -312,7 +322,10 @@ pub(crate) fn staged(changes: &[(&str, Value)]) -> Value {
             ("/atmosphere", json!({"type": "us76"})),
             ("/vehicle", vehicle),
             ("/control", json!({"bank_angle": 0.8})),
-            ("/events", json!([event("time", "rises_through", 0.1, &lit), event("time", "rises_through", 0.2, &json!({}))])),
+            (
+                "/events",
+                json!([event("time", "rises_through", 0.1, &lit), event("time", "rises_through", 0.2, &json!({}))]),
+            ),
         ],
     );
     changes.iter().fold(request, |request, (pointer, value)| with(&request, pointer, value.clone()))

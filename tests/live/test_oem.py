@@ -134,7 +134,7 @@ def test_velocities_are_those_of_the_places(written, flight):
 
 def test_segments_meet_where_they_jump(written):
     coast, rest = segments(written(CASES["an impulse"], "oem"))[:2]
-    before, after = list(coast)[-1], list(rest)[0]
+    before, after = list(coast)[-1], next(iter(rest))
     assert before.date == after.date
     jump = np.array(after) - np.array(before)
     # Both are moved on to their date as it is written, by half a microsecond at most.

@@ -748,7 +748,8 @@ impl Case {
             (format!("events.{index}.then.aerodynamics.type").into(), by_mach)
         });
         let steered = self.events.iter().enumerate();
-        let steered = steered.filter_map(|(index, event)| Some((format!("events.{index}.then.steer"), event.then.steer.as_ref()?)));
+        let steered = steered
+            .filter_map(|(index, event)| Some((format!("events.{index}.then.steer"), event.then.steer.as_ref()?)));
         let steers = steered.chain([("control.steering".to_owned(), &self.steering)]).flat_map(|(place, steering)| {
             let commands = ["pitch", "yaw"].into_iter().zip(steering.commands().into_iter().flatten());
             let of = |(name, command): (&str, &Command)| {

@@ -1,5 +1,7 @@
 //! A place on the surface of a planet, and how far from it a flight ends.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 
 use super::{Geodetic, LocalHorizon};
@@ -32,6 +34,17 @@ impl Site {
         let chord = other.position(shape) - self.position(shape);
         let horizon = LocalHorizon::new(self.longitude, self.geodetic_latitude);
         [chord.dot(&horizon.east), chord.dot(&horizon.north)]
+    }
+
+    /// How far another place is, m, along the great circle of the sphere with the equatorial radius, and its azimuth from here, clockwise from
+    /// north, in [0, 2π), rad; 0 where both are one place.
+    pub fn distance_and_azimuth_to(&self, other: &Self, shape: &Shape) -> [f64; 2] {
+        let [here, there] = [self, other].map(|site| site.position(shape));
+        let (radius, _) = shape.semi_axes();
+        let [east, north] = self.offset_to(other, shape);
+        let turn = east.atan2(north);
+        let azimuth = if turn < 0.0 { turn + TAU } else { turn };
+        [here.cross(&there).norm().atan2(here.dot(&there)) * radius, if azimuth < TAU { azimuth } else { 0.0 }]
     }
 
     /// Planet-fixed, m.

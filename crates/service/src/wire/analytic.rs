@@ -75,7 +75,7 @@ fn conditions_of_theories() -> Value {
             "atmosphere": {"properties": {"type": {"const": "exponential"}, "surface_density": positive}},
             "density_factor": positive,
             "vehicle": {"properties": {"reference_area": positive, "aerodynamics": {"properties": constant}}},
-            "output": {"properties": {"trajectory": false, "columns": false}},
+            "output": {"properties": {"trajectory": false, "columns": false, "sites": {"const": false}}},
         },
         "if": {"properties": {"solution": {"const": "steep_ballistic"}}},
         "then": {"properties": aerodynamics(json!({"properties": lift(json!({"const": 0}))}))},
@@ -106,6 +106,10 @@ impl TheoryRequest {
         if request.output.columns.is_some() {
             let detail = "must not be given: the columns of this response are fixed";
             misplaced.push(Fault::new("/output/columns", detail));
+        }
+        if request.output.sites {
+            let detail = "must be false or absent: this response has no nearest site";
+            misplaced.push(Fault::new("/output/sites", detail));
         }
         if request.heating.is_some() {
             misplaced.push(Fault::new("/heating", "must not be given: the theories do not include heating"));

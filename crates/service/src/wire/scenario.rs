@@ -82,6 +82,8 @@ pub struct Output {
     pub columns: Option<Vec<AskedColumn>>,
     /// What is asked of the bodies that leave the vehicle.
     pub bodies: OutputOfBodies,
+    /// Whether the answer names the site that is nearest to the end.
+    pub sites: bool,
 }
 
 /// What the answer has of the bodies that leave the vehicle.
@@ -161,6 +163,10 @@ impl FlightRequest {
         if output != RequestedOutput::Answer && request.output.sampling.is_none() {
             let detail = "must not be false: CSV, OEM and map formats contain only the trajectory";
             misplaced.push(Fault::new("/output/trajectory", detail));
+        }
+        if request.output.sites && !request.planet.is_earth() {
+            let detail = "must be false or absent on a planet other than the Earth, where the sites of GET /sites are";
+            misplaced.push(Fault::new("/output/sites", detail));
         }
         let numbers = request.numbers_that_vary(&tree, &mut misplaced)?;
         let scenario = match request.try_into_scenario() {
@@ -416,12 +422,13 @@ fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Outp
     object.named(
         "Output",
         "Rows and columns of the trajectory. Exactly one of `samples_per_step`, `interval`, `count`, `times` and \
-         `trajectory` must be given; if only `columns` or `bodies` is given, `samples_per_step` is 4. The rows at the \
+         `trajectory` must be given; if only `columns`, `bodies` or \
+         `sites` are given, `samples_per_step` is 4. The rows at the \
          start and at the end are always included. Of every body that leaves the vehicle there are the same rows and \
          columns, as far as it has them.",
     );
     let has_columns = object.has("columns");
-    if (has_columns || object.has("bodies")) && !WAYS.iter().any(|way| object.has(way)) {
+    if ["columns", "bodies", "sites"].iter().any(|name| object.has(name)) && !WAYS.iter().any(|way| object.has(way)) {
         object.fill("samples_per_step", json!(4));
     }
     let per_step = object
@@ -476,6 +483,14 @@ fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Outp
         .doc("Output for the bodies that leave the vehicle, and those that leave them; by default `full`.")
         .optional()
         .word(&OUTPUTS_OF_BODIES);
+    let sites = object
+        .field("sites", "Nearest site")
+        .doc(
+            "Whether the response names the site of `GET /sites` that is nearest to the end of the flight, as \
+             `nearest_site`; by default `false`. On the Earth only; CSV, OEM and map formats ignore it.",
+        )
+        .optional()
+        .boolean();
     let no_trajectory = object.has("trajectory");
     if has_columns && no_trajectory {
         object.fault_of("columns", "must not be given together with \"trajectory\": false");
@@ -483,7 +498,7 @@ fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Outp
     object.condition(|| {
         // Without a way there are four rows a step.
         let required = |name| json!({"required": [name]});
-        let (ways, others) = (WAYS.map(required), ["columns", "bodies"].map(required));
+        let (ways, others) = (WAYS.map(required), ["columns", "bodies", "sites"].map(required));
         json!({"if": {"anyOf": ways}, "then": {"oneOf": ways}, "else": {"anyOf": others}})
     });
     object.condition(|| json!({"dependentSchemas": {"trajectory": {"not": {"required": ["columns"]}}}}));
@@ -500,6 +515,7 @@ fn output(object: &mut Object, parts: &[String], separates: bool) -> Option<Outp
         sampling: per_step.or(interval).or(count).or(times),
         columns: columns.map(|columns| columns.into_iter().map(asked).collect()),
         bodies: bodies.unwrap_or_default(),
+        sites: sites.unwrap_or_default(),
     })
 }
 
@@ -689,7 +705,6 @@ impl SimulateRequest {
             bodies,
         }
     }
-
 }
 
 /// Whether a fault is that of a name, of which the request has one with the name itself.
@@ -819,7 +834,8 @@ impl<'a> Flown<'a> {
             for (place, separation) in event.then.separated.iter().enumerate() {
                 let pointer = format!("/events/{index}/then/separate/{place}");
                 // Whether names of no parts are all that is missing is not known.
-                let missing = separation.is_of(parts).then(|| separation.vehicle(&separation.parts_of(parts), &pointer));
+                let missing =
+                    separation.is_of(parts).then(|| separation.vehicle(&separation.parts_of(parts), &pointer));
                 faults.extend(missing.and_then(Result::err).into_iter().flatten());
                 let of_body = self.body(separation, pointer.clone()).faults();
                 faults.extend(

@@ -3,10 +3,12 @@
 use std::sync::LazyLock;
 
 use reentry::coordinates::Site;
+use reentry::planet::Shape;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
+use super::AngleUnit;
 use super::shown::shown;
 
 /// Launch, landing or recovery site.
@@ -67,6 +69,28 @@ impl SiteKind {
 /// All sites, with their sources; none where the file is not what the tests hold it to.
 pub static SITES: LazyLock<Vec<ListedSite>> =
     LazyLock::new(|| serde_json::from_str(include_str!("sites.json")).unwrap_or_default());
+
+/// Site that is nearest to the end of a flight.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct NearestSite {
+    /// Slug of the site in `GET /sites`.
+    pub slug: &'static str,
+    /// Distance of the end point from the site, m, along the great circle of the sphere with the equatorial radius.
+    pub distance: f64,
+    /// Azimuth of the end point as seen from the site, from north towards east, in [0, 2π).
+    pub azimuth: f64,
+}
+
+impl NearestSite {
+    /// The one that is nearest to a place on a planet of a shape.
+    pub fn to(place: &Site, shape: &Shape, unit: AngleUnit) -> Option<Self> {
+        let from = |site: &'static ListedSite| {
+            let [distance, azimuth] = site.place().distance_and_azimuth_to(place, shape);
+            Self { slug: &site.slug, distance, azimuth: unit.turn_from_radians(azimuth) }
+        };
+        SITES.iter().map(from).min_by(|one, other| one.distance.total_cmp(&other.distance))
+    }
+}
 
 impl ListedSite {
     /// Its place on the surface.

@@ -18,10 +18,12 @@ use super::AngleUnit;
 use super::bodies::{DescribedBody, FlownBodies, FlownBody, FlownSeparation};
 use super::columns::{Columns, Row, csv_text};
 use super::dispersions::Covariance;
+use super::outputs::ground_point;
 use super::planet::MODELS;
 use super::scenario::{FORMULATIONS, SimulateRequest};
 use super::schema::names;
 use super::sensitivities::SensitivitiesAnswer;
+use super::sites::NearestSite;
 use super::vehicle;
 use super::verification::Verification;
 use super::warning::{Purpose, Warning};
@@ -243,6 +245,10 @@ pub struct FlightReport {
     pub initial_state: Row,
     /// State at the end, after the events at that instant.
     pub final_state: Row,
+    /// Site of `GET /sites` that is nearest to the ground point of the end; present with `output.sites`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, nullable = false)]
+    pub nearest_site: Option<NearestSite>,
     /// Events that happened, in order; present if the request has events.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, nullable = false)]
@@ -372,6 +378,9 @@ impl FlightReport {
             until,
             peaks: Peaks::from(&peaks),
         };
+        let last = flight.last();
+        let shape = &request.planet.core.shape;
+        let nearest_site = request.output.sites.then(|| NearestSite::to(&ground_point(&last), shape, unit)).flatten();
         let phases = flight.phases();
         let (termination, condition) = match flight.termination() {
             CoreTermination::SurfaceImpact => (Termination::SurfaceImpact, None),
@@ -386,7 +395,8 @@ impl FlightReport {
             termination,
             condition,
             initial_state: row(flight.initial()),
-            final_state: row(flight.last()),
+            final_state: row(last),
+            nearest_site,
             events: (!events.is_empty()).then(|| flight.events().map(report).collect()),
             peaks: Peaks::from(flight.peaks()),
             phases: (phases.len() > 1).then(|| phases.into_iter().map(phase).collect()),

@@ -63,7 +63,7 @@ export function airOfEarth(atmosphere: Case['atmosphere']): string | null {
 export function whyNoOem(flight: Case): string | null {
   const model = modelOf(flight);
   if (!isEarth(model) && model !== 'mars') return `OEM: the standard names no frame of ${bodyIn(model)}.`;
-  return flight.epoch === undefined ? 'OEM: requires an epoch.' : null;
+  return flight.epoch ? null : 'OEM: requires an epoch.';
 }
 
 /** The formats of maps that place a flight on the globe of its planet; the service refuses the others. */
