@@ -1,5 +1,5 @@
 import { computed, effect, useSignal } from '@preact/signals';
-import { type GeoProjection, geoAzimuthalEquidistant, geoEquirectangular, geoOrthographic } from 'd3-geo';
+import { type GeoProjection, geoAzimuthalEquidistant, geoCentroid, geoEquirectangular, geoOrthographic } from 'd3-geo';
 import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
@@ -9,7 +9,7 @@ import { isLaunch, launchAt, launchFrom } from '../form/launch';
 import { bodyIn, isEarth, isSameGround, planetOf } from '../planets';
 import { type ListedSite, loadSites, sites, titleOfSite } from '../sites';
 import { current, cursor, draft, runs, tracks } from '../store';
-import { extent, middleOf, placeAt, ramp, written } from './geography';
+import { extent, middleOf, type Place, placeAt, ramp, written } from './geography';
 import { siteAt } from './sites';
 import { drawScene, isPlaced, type Scene } from './view';
 import './map.css';
@@ -23,7 +23,7 @@ const scene = computed<Scene>(() => {
 
 /** The ground track, on a map of the planet and on a globe. */
 export default function Maps() {
-  const isClose = useSignal(false);
+  const view = useSignal<View>('world');
   const isPicking = useSignal(false);
   useEffect(loadSites, []);
   const run = current.value;
@@ -32,15 +32,18 @@ export default function Maps() {
     <section class="panel" aria-label="Ground track">
       <div class="panel-head">
         <h2>{`Ground track on ${bodyIn(planetOf(run))}`}</h2>
-        <button
-          type="button"
-          aria-pressed={isClose.value}
-          onClick={() => {
-            isClose.value = !isClose.value;
-          }}
-        >
-          Zoom to track
-        </button>
+        {(['track', ...(run.flight.bodies.length > 0 ? ['bodies' as const] : [])] as const).map((which) => (
+          <button
+            key={which}
+            type="button"
+            aria-pressed={view.value === which}
+            onClick={() => {
+              view.value = view.value === which ? 'world' : which;
+            }}
+          >
+            Zoom to {which}
+          </button>
+        ))}
         {isLaunch() && isEarth(planetOf(run)) && (
           <button
             type="button"
@@ -55,7 +58,10 @@ export default function Maps() {
         <Legend run={run} />
       </div>
       <div class="maps">
-        <World isClose={isClose.value} isPicking={isPicking.value && isLaunch()} />
+        <World
+          view={view.value === 'bodies' && run.flight.bodies.length === 0 ? 'track' : view.value}
+          isPicking={isPicking.value && isLaunch()}
+        />
         <Globe />
       </div>
       <Ground planet={planetOf(run)} />
@@ -122,18 +128,18 @@ function summaryOf(run: Run): string {
   return `from ${written(from)} to ${written(to)}${range}`;
 }
 
-function World({ isClose, isPicking }: { isClose: boolean; isPicking: boolean }) {
+function World({ view, isPicking }: { view: View; isPicking: boolean }) {
   const pointed = useSignal<Pointed | null>(null);
   const projection = useRef<GeoProjection>(geoEquirectangular());
   const { canvas } = useCanvas(
     (ctx, width, height, shown) => {
       const flight = shown.runs[0]?.flight;
-      const own = shown.runs.filter(({ id }) => id <= 0);
       // Around the middle of the track, where a pole is a place like others.
-      const near = isClose ? geoAzimuthalEquidistant() : geoEquirectangular();
-      if (isClose && flight) {
-        const places = own.flatMap((run) => run.flight.columns.time.map((time) => placeAt(run.flight, time)));
-        const [longitude, latitude] = middleOf(flight);
+      const near = view !== 'world' ? geoAzimuthalEquidistant() : geoEquirectangular();
+      if (view !== 'world' && flight) {
+        const places = placesOf(shown.runs, view);
+        const middle = view === 'bodies' ? geoCentroid({ type: 'MultiPoint', coordinates: places }) : middleOf(flight);
+        const [longitude, latitude] = middle;
         near.rotate([-longitude, -latitude]);
         const margin = 40;
         near.fitExtent(
@@ -141,14 +147,14 @@ function World({ isClose, isPicking }: { isClose: boolean; isPicking: boolean })
             [margin, margin],
             [width - margin, height - margin],
           ],
-          { type: 'MultiPoint', coordinates: [...places, ...around(middleOf(flight))] },
+          { type: 'MultiPoint', coordinates: [...places, ...around(middle)] },
         );
       } else near.fitSize([width, height], { type: 'Sphere' });
       projection.current = near;
       const degrees = width / ((near.scale() * Math.PI) / 180);
       drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : degrees > 10 ? 2 : 0.5);
     },
-    [isClose],
+    [view],
   );
   const run = current.value;
   return (
@@ -209,6 +215,15 @@ function pick(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, isPic
 
 /** Degrees to some 100 m, which is finer than a pixel. */
 const rounded = (degrees: number) => Number(degrees.toFixed(3));
+
+/** What is in sight: the planet, the tracks, or those of the bodies with the vehicle until the last of them has left it. */
+type View = 'world' | 'track' | 'bodies';
+
+function placesOf(runs: Run[], view: View): Place[] {
+  const own = runs.filter(({ id }) => id <= 0);
+  const last = view === 'bodies' ? Math.max(...own.filter(({ id }) => id < 0).map(({ flight }) => flight.initial.time ?? 0)) : Infinity;
+  return own.flatMap(({ id, flight }) => flight.columns.time.filter((time) => id < 0 || time <= last).map((time) => placeAt(flight, time)));
+}
 
 /** Places half a degree around another, so that the shortest track is not blown up to nothing but itself. */
 function around([longitude, latitude]: [number, number]): [number, number][] {

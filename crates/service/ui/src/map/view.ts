@@ -91,7 +91,8 @@ const MOST_LABELS = 2;
 function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { runs, time }: Scene): void {
   const taken: [number, number][] = [];
   const nearTo = (point: [number, number]) => taken.filter(([x, y]) => Math.abs(x - point[0]) < 110 && Math.abs(y - point[1]) < 18).length;
-  for (const run of runs) {
+  // The ends of bodies have their labels before the marks of the vehicle.
+  for (const run of [...runs].sort((a, b) => Number(a.id >= 0) - Number(b.id >= 0))) {
     if (run.id === 0) {
       const places = run.flight.marks.filter(isPlaced).map((mark) => ({ mark, point: seen(projection, placeAt(run.flight, mark.time)) }));
       // Of labels in each other's way the end has its own, a second goes below its mark, a third is left to the list.
