@@ -136,10 +136,10 @@ fn launcher() -> Case {
     let profile = [(0.0, 10e3), (2.0, 60e3), (18.0, 70e3), (24.0, 0.0)];
     let boosters = Part { count: 2, ..motor(90.0, 900.0, &profile, 270.0, 0.03) };
     let parts = vec![
-        stage(1100.0, 9000.0, 230e3, 290.0, 0.3),
+        stage(1100.0, 9000.0, 250e3, 290.0, 0.3),
         boosters,
         stage(250.0, 1500.0, 30e3, 340.0, 0.05),
-        load(11_300.0),
+        load(10_700.0),
         load(150.0),
     ];
     let case = vehicle_of(earth(), parts);
@@ -151,13 +151,13 @@ fn launcher() -> Case {
     let axes = launch_axes(&case.planet, &case.initial_state.position, 1.2);
     let tangent = Steering::LinearTangent { axes: Rotation3::from_matrix_unchecked(axes), a: 1.5, b: 0.012 };
     let tilt = Some(Tilt { angle: 0.04, azimuth: 1.2 });
-    let throttle = vec![Throttle { part: 0, value: 0.7 }];
+    let throttle = vec![Throttle { part: 0, value: 0.95 }];
     let events = vec![
         at(0.5, ignite(&[0, 1])),
         lift_off(),
         on(rises(Quantity::Speed, 50.0), Effect { tilt, steer: Some(Steering::Velocity), ..Effect::default() }),
         on(Trigger::AfterBurnout { part: 1, delay: 1.5 }, drop(&[1], 0)),
-        on(rises(Quantity::Altitude, 6e3), Effect { throttle, ..Effect::default() }),
+        on(rises(Quantity::Altitude, 3e3), Effect { throttle, ..Effect::default() }),
         on(Trigger::AfterBurnout { part: 0, delay: 0.0 }, drop(&[0], 1)),
         on(Trigger::After { event: 5, delay: 2.5 }, Effect { ignite: vec![2], ..steer(tangent) }),
     ];
@@ -187,7 +187,7 @@ fn slopes_of_a_launch_with_boosters_and_stages() {
         number("tilt", 0.04, |case, offset| case.events[2].then.tilt.as_mut().unwrap().angle += offset),
         number("azimuth", 1.0, |case, offset| case.events[2].then.tilt.as_mut().unwrap().azimuth += offset),
         number("delay after burnout", 1.0, |case, offset| *number_of(&mut case.events[3].when) += offset),
-        number("altitude of the throttling", 6e3, |case, offset| *number_of(&mut case.events[4].when) += offset),
+        number("altitude of the throttling", 3e3, |case, offset| *number_of(&mut case.events[4].when) += offset),
         number("delay after an event", 1.0, |case, offset| *number_of(&mut case.events[6].when) += offset),
         number("a", 1.0, |case, offset| *tangent(case)[0] += offset),
         number("b", 0.01, |case, offset| *tangent(case)[1] += offset),
