@@ -6,9 +6,10 @@
 
 use std::sync::atomic::AtomicBool;
 
+use reentry::simulate::Flights;
 use reentry::trajectory::Sampling;
 use reentry::{Scenario, simulate};
-use reentry_service::wire::columns::Columns;
+use reentry_service::wire::bodies::FlownBodies;
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
 use reentry_service::wire::trajectory::{RequestedAnalyses, SimulateResponse};
@@ -30,8 +31,7 @@ fn main() {
 fn line(name: &str) -> String {
     let (scenario, response) = answered(name);
     let flight = simulate(&scenario, &AtomicBool::new(false)).unwrap();
-    let trajectory = response.trajectory.as_ref().unwrap();
-    let csv = String::from_utf8(as_csv(trajectory)).unwrap();
+    let csv = String::from_utf8(as_csv(&response)).unwrap();
     let cells = csv.lines().skip(1).flat_map(|line| line.split(','));
     let numbers: Vec<f64> = cells.map(|x| x.parse().unwrap()).collect();
     let columns = csv.lines().next().unwrap().split(',').count();
@@ -41,7 +41,7 @@ fn line(name: &str) -> String {
         [
             &mut timed(|| flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap())),
             &mut timed(|| serde_json::to_vec(&response).unwrap()),
-            &mut timed(|| as_csv(trajectory)),
+            &mut timed(|| as_csv(&response)),
             &mut timed(|| serde_json::to_vec(&numbers).unwrap()),
         ],
     );
@@ -56,14 +56,17 @@ fn answered(name: &str) -> (Scenario, SimulateResponse) {
     let tree = json::parse(case.request.to_string().as_bytes()).unwrap();
     let job = FlightRequest::try_from_tree(tree, RequestedOutput::Answer).unwrap();
     let scenario = job.scenario.clone();
-    let flight = simulate(&scenario, &AtomicBool::new(false)).unwrap();
-    let points = flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap());
-    (scenario, SimulateResponse::new(job, &flight, Some(points), RequestedAnalyses::default(), 0.0))
+    let flights = Flights::of_vehicle(simulate(&scenario, &AtomicBool::new(false)).unwrap());
+    let flight = &flights.vehicle;
+    let rows = vec![Some(flight.points(&flight.instants(&Sampling::Count(ROWS), ROWS).unwrap()))];
+    let flown = FlownBodies::new(&job.request, &flights);
+    let response = SimulateResponse::new(&job.request, &flown, rows, RequestedAnalyses::default(), 0.0);
+    (scenario, response)
 }
 
 /// The rows as CSV.
-fn as_csv(trajectory: &Columns) -> Vec<u8> {
+fn as_csv(response: &SimulateResponse) -> Vec<u8> {
     let mut csv = Vec::new();
-    trajectory.write_csv(&mut csv).unwrap();
+    response.write_csv(&mut csv).unwrap();
     csv
 }

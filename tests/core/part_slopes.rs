@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use nalgebra::Rotation3;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Effect, Quantity, Separation, Throttle, Tilt, Trigger};
 use reentry::part::{Part, ThrustEntry, ThrustProfile};
@@ -135,10 +136,10 @@ fn launcher() -> Case {
     let profile = [(0.0, 10e3), (2.0, 60e3), (18.0, 70e3), (24.0, 0.0)];
     let boosters = Part { count: 2, ..motor(90.0, 900.0, &profile, 270.0, 0.03) };
     let parts = vec![
-        stage(1100.0, 9000.0, 230e3, 290.0, 0.3),
+        stage(1100.0, 9000.0, 250e3, 290.0, 0.3),
         boosters,
         stage(250.0, 1500.0, 30e3, 340.0, 0.05),
-        load(11_300.0),
+        load(10_700.0),
         load(150.0),
     ];
     let case = vehicle_of(earth(), parts);
@@ -148,15 +149,15 @@ fn launcher() -> Case {
     };
     let bodies = vec![body(1), body(0)];
     let axes = launch_axes(&case.planet, &case.initial_state.position, 1.2);
-    let tangent = Steering::LinearTangent { axes, a: 1.5, b: 0.012 };
+    let tangent = Steering::LinearTangent { axes: Rotation3::from_matrix_unchecked(axes), a: 1.5, b: 0.012 };
     let tilt = Some(Tilt { angle: 0.04, azimuth: 1.2 });
-    let throttle = vec![Throttle { part: 0, value: 0.7 }];
+    let throttle = vec![Throttle { part: 0, value: 0.95 }];
     let events = vec![
         at(0.5, ignite(&[0, 1])),
         lift_off(),
         on(rises(Quantity::Speed, 50.0), Effect { tilt, steer: Some(Steering::Velocity), ..Effect::default() }),
         on(Trigger::AfterBurnout { part: 1, delay: 1.5 }, drop(&[1], 0)),
-        on(rises(Quantity::Altitude, 6e3), Effect { throttle, ..Effect::default() }),
+        on(rises(Quantity::Altitude, 3e3), Effect { throttle, ..Effect::default() }),
         on(Trigger::AfterBurnout { part: 0, delay: 0.0 }, drop(&[0], 1)),
         on(Trigger::After { event: 5, delay: 2.5 }, Effect { ignite: vec![2], ..steer(tangent) }),
     ];
@@ -186,7 +187,7 @@ fn slopes_of_a_launch_with_boosters_and_stages() {
         number("tilt", 0.04, |case, offset| case.events[2].then.tilt.as_mut().unwrap().angle += offset),
         number("azimuth", 1.0, |case, offset| case.events[2].then.tilt.as_mut().unwrap().azimuth += offset),
         number("delay after burnout", 1.0, |case, offset| *number_of(&mut case.events[3].when) += offset),
-        number("altitude of the throttling", 6e3, |case, offset| *number_of(&mut case.events[4].when) += offset),
+        number("altitude of the throttling", 3e3, |case, offset| *number_of(&mut case.events[4].when) += offset),
         number("delay after an event", 1.0, |case, offset| *number_of(&mut case.events[6].when) += offset),
         number("a", 1.0, |case, offset| *tangent(case)[0] += offset),
         number("b", 0.01, |case, offset| *tangent(case)[1] += offset),
@@ -213,7 +214,8 @@ fn limited(boosted: bool) -> Case {
     };
     let pitch = schedule(Against::Time, &[10.0, 25.0, 60.0], &[1.5, 1.3, 0.6]);
     let yaw = schedule(Against::Altitude, &[2e3, 9e3], &[0.0, 0.1]);
-    let program = Steering::Program(Program { axes: ProgramAxes::Inertial(axes), pitch, yaw });
+    let program =
+        Steering::Program(Program { axes: ProgramAxes::Inertial(Rotation3::from_matrix_unchecked(axes)), pitch, yaw });
     let events = vec![
         at(0.0, Effect { load_limit: Some(Some(2.6)), ..ignite(if boosted { &[0, 1] } else { &[0] }) }),
         lift_off(),
@@ -272,8 +274,12 @@ fn slopes_of_an_ascent_by_a_program_under_a_load_limit() {
 fn slopes_of_an_ascent_that_ends_with_its_burn() {
     // Shut down and lit again, and the end of the flight is the burnout itself.
     let case = vehicle_of(earth(), vec![stage(800.0, 2700.0, 90e3, 280.0, 0.12), load(500.0)]);
-    let events =
-        vec![at(0.0, ignite(&[0])), lift_off(), at(20.0, shut_down(&[0])), on(rises(Quantity::Time, 22.0), ignite(&[0]))];
+    let events = vec![
+        at(0.0, ignite(&[0])),
+        lift_off(),
+        at(20.0, shut_down(&[0])),
+        on(rises(Quantity::Time, 22.0), ignite(&[0])),
+    ];
     for delay in [0.0, 2.0] {
         let stop = Stop { when: vec![Trigger::AfterBurnout { part: 0, delay }], ..Stop::default() };
         let case = Case { events: events.clone(), stop, ..case.clone() };

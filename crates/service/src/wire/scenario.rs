@@ -749,7 +749,8 @@ impl<'a> Flown<'a> {
     fn body(&self, separation: &'a Separation, pointer: String) -> Self {
         let parts = separation.parts_of(&self.parts);
         Flown {
-            vehicle: separation.vehicle(&parts, &pointer).ok(),
+            // Of names of no parts alone, nothing is known.
+            vehicle: separation.vehicle(&parts, &pointer).ok().filter(|_| !parts.is_empty()),
             separation: Some(separation),
             place: pointer,
             parts: Cow::Owned(parts),
