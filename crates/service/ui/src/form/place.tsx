@@ -49,7 +49,7 @@ export function LaunchPlace({ path }: { path: Path }) {
           {site.geodetic_latitude.toFixed(4)}°, {site.longitude.toFixed(4)}°, {site.geodetic_altitude} m
         </p>
       )}
-      {onEarth && <p class="quiet">On the map, click a site or choose “Pick launch place”.</p>}
+      <p class="quiet">{onEarth ? 'On the map, click a site, or use “Pick launch place”.' : 'On the map, use “Pick launch place”.'}</p>
     </>
   );
 }

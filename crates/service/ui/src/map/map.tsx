@@ -4,7 +4,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
 import { kilometres, number } from '../figures';
-import { at, type Run, withBodies } from '../flight';
+import { at, endOf, type Flight, type Run, withBodies } from '../flight';
 import { isLaunch, launchAt, launchFrom } from '../form/launch';
 import { bodyIn, isEarth, isSameGround, planetOf } from '../planets';
 import { type ListedSite, loadSites, sites, titleOfSite } from '../sites';
@@ -18,7 +18,13 @@ const scene = computed<Scene>(() => {
   const instant = Date.parse(draft.value.epoch ?? '');
   const planet = current.value ? planetOf(current.value) : '';
   const here = tracks.value.filter((run) => isSameGround(planetOf(run), planet));
-  return { runs: here, sites: sites.value, planet, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
+  return {
+    runs: here,
+    sites: isEarth(planet) ? sites.value : [],
+    planet,
+    time: cursor.value,
+    epoch: Number.isNaN(instant) ? null : new Date(instant),
+  };
 });
 
 /** The ground track, on a map of the planet and on a globe. */
@@ -44,7 +50,7 @@ export default function Maps() {
             Zoom to {which}
           </button>
         ))}
-        {isLaunch() && isEarth(planetOf(run)) && (
+        {isLaunch() && (
           <button
             type="button"
             aria-pressed={isPicking.value}
@@ -197,17 +203,14 @@ interface Pointed {
 }
 
 function pointedAt(projection: GeoProjection, { offsetX, offsetY, currentTarget }: PointerEvent): Pointed | null {
-  const run = current.value;
-  if (!run || !isEarth(planetOf(run))) return null;
-  const site = siteAt(projection, sites.value, [offsetX, offsetY]);
+  const site = siteAt(projection, scene.value.sites, [offsetX, offsetY]);
   return site && { site, x: offsetX, y: offsetY, isRight: offsetX > (currentTarget as HTMLElement).clientWidth / 2 };
 }
 
 /** Puts a launch where the map was clicked: at a site or, where the reader is to pick a place, at any other. */
 function pick(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, isPicking: boolean): void {
-  const run = current.value;
-  if (!run || !isLaunch() || !isEarth(planetOf(run))) return;
-  const site = siteAt(projection, sites.value, [offsetX, offsetY]);
+  if (!isLaunch()) return;
+  const site = siteAt(projection, scene.value.sites, [offsetX, offsetY]);
   const place = projection.invert?.([offsetX, offsetY]);
   if (site) launchFrom(site.slug);
   else if (isPicking && place) launchAt(rounded(place[1]), rounded(place[0]));
@@ -355,39 +358,46 @@ function BodyLegend({ run }: { run: Run }) {
   );
 }
 
-/** The marked places, to copy. */
+/** The marked places, and where bodies came down, to copy. */
 function Places({ run }: { run: Run }) {
   const said = useSignal('');
   const { flight } = run;
+  const ends = ({ final }: Flight): Place => [final.longitude ?? 0, final.geodetic_latitude ?? 0];
+  const marks = flight.marks.filter(isPlaced).map(({ kind, label, time }) => ({
+    label,
+    time,
+    altitude: at(flight, 'altitude', time),
+    place: kind === 'end' ? ends(flight) : placeAt(flight, time),
+  }));
+  const bodies = flight.bodies.map(({ name, flight: body }) => ({
+    label: `${name}: ${endOf(body.answer)}`,
+    time: body.final.time ?? 0,
+    altitude: body.final.altitude ?? 0,
+    place: ends(body),
+  }));
   return (
     <div class="places">
       <ul>
-        {flight.marks.filter(isPlaced).map((mark) => {
-          const place = written(
-            mark.kind === 'end' ? [flight.final.longitude ?? 0, flight.final.geodetic_latitude ?? 0] : placeAt(flight, mark.time),
-          );
-          const altitude = at(flight, 'altitude', mark.time);
-          return (
-            <li key={`${mark.kind}${mark.label}${mark.time}`}>
-              <strong>{mark.label}</strong> <code>{place}</code>{' '}
-              <span class="quiet">
-                {kilometres(altitude, 4)} km, {number(mark.time, 5)} s
-              </span>{' '}
-              <button
-                type="button"
-                class="small"
-                aria-label={`Copy position of ${mark.label}`}
-                onClick={() => {
-                  void copied(place).then(() => {
-                    said.value = `Copied: ${place}`;
-                  });
-                }}
-              >
-                Copy
-              </button>
-            </li>
-          );
-        })}
+        {[...marks, ...bodies].map(({ label, time, altitude, place }, index) => (
+          <li key={`${index}${label}`}>
+            <strong>{label}</strong> <code>{written(place)}</code>{' '}
+            <span class="quiet">
+              {kilometres(altitude, 4)} km, {number(time, 5)} s
+            </span>{' '}
+            <button
+              type="button"
+              class="small"
+              aria-label={`Copy position of ${label}`}
+              onClick={() => {
+                void copied(written(place)).then(() => {
+                  said.value = `Copied: ${written(place)}`;
+                });
+              }}
+            >
+              Copy
+            </button>
+          </li>
+        ))}
       </ul>
       <output class="quiet" aria-live="polite">
         {said.value}
