@@ -127,14 +127,16 @@ impl Variation {
     }
 }
 
+/// Of an event its aerodynamics as far as they are tables, the axes of its thrust and impulse, and its steering.
+type ModelsOfEvent = (Option<Models>, [Option<ThrustAxis>; 2], Option<Steering>);
+
 /// What a flight takes from its case that is not a number: the models, and what events put in their place.
 #[derive(PartialEq)]
 struct ModelsOfFlight {
     of_start: Models,
     /// Where the axis of the vehicle points.
     steering: Steering,
-    /// Of each event its aerodynamics as far as they are tables, the axes of its thrust and impulse, and its steering.
-    of_events: Vec<(Option<Models>, [Option<ThrustAxis>; 2], Option<Steering>)>,
+    of_events: Vec<ModelsOfEvent>,
 }
 
 impl ModelsOfFlight {
