@@ -493,7 +493,11 @@ fn random_effect() -> impl Strategy<Value = Effect> {
     let steering = prop_oneof![
         Just(Steering::Vertical),
         Just(Steering::Velocity),
-        (-2.0..2.0, -0.1..0.1).prop_map(|(a, b)| Steering::LinearTangent { axes: nalgebra::Matrix3::identity(), a, b })
+        (-2.0..2.0, -0.1..0.1).prop_map(|(a, b)| Steering::LinearTangent {
+            axes: nalgebra::Rotation3::identity(),
+            a,
+            b
+        })
     ];
     prop_oneof![
         4 => part.clone().prop_map(|part| ignite(&[part])),

@@ -127,15 +127,6 @@ impl Variation {
     }
 }
 
-/// What a flight takes from its case that is not a number: the models, and what events put in their place.
-#[derive(PartialEq)]
-struct ModelsOfFlight {
-    of_start: Models,
-    /// Where the axis of the vehicle points.
-    steering: Steering,
-    of_events: Vec<ModelsOfEvent>,
-}
-
 /// What an event puts in their place.
 #[derive(PartialEq)]
 struct ModelsOfEvent {
@@ -144,6 +135,15 @@ struct ModelsOfEvent {
     /// Of its thrust and its impulse.
     axes: [Option<ThrustAxis>; 2],
     steering: Option<Steering>,
+}
+
+/// What a flight takes from its case that is not a number: the models, and what events put in their place.
+#[derive(PartialEq)]
+struct ModelsOfFlight {
+    of_start: Models,
+    /// Where the axis of the vehicle points.
+    steering: Steering,
+    of_events: Vec<ModelsOfEvent>,
 }
 
 impl ModelsOfFlight {
