@@ -20,7 +20,10 @@ use super::rockets::{
 };
 
 /// A number of a case: its name, the size in which it is moved, and how.
-struct Number(&'static str, f64, Box<dyn Fn(&mut Case, f64)>);
+struct Number(&'static str, f64, Box<Move>);
+
+/// Moves a number of a case by an offset.
+type Move = dyn Fn(&mut Case, f64);
 
 fn number(name: &'static str, size: f64, moved: impl Fn(&mut Case, f64) + 'static) -> Number {
     Number(name, size, Box::new(moved))
@@ -57,8 +60,11 @@ fn outputs(events: usize) -> Vec<(&'static str, Moment, Value)> {
     outputs
 }
 
-/// Of every output the value, and its slopes.
-fn slopes_of(flight: &Trajectory, events: usize, variations: &[Variation]) -> Vec<(f64, Vec<f64>)> {
+/// Of an output the value, and its slopes.
+type ValueAndSlopes = (f64, Vec<f64>);
+
+/// Those of every output.
+fn slopes_of(flight: &Trajectory, events: usize, variations: &[Variation]) -> Vec<ValueAndSlopes> {
     let values: Vec<_> = outputs(events)
         .into_iter()
         .map(|(_, at, value)| (at, move |point: &FlightPoint, _: Option<Moved>| Some(value(point))))
@@ -86,7 +92,7 @@ fn agree_with_differences(what: &str, case: &Case, numbers: &[Number]) {
         let differences = [2e-4, 1e-4].map(|part| {
             let step = part * size;
             let [above, below] = [step, -step].map(|offset| slopes_of(&fly(&number.case(&case, offset)), events, &[]));
-            let slope = |(above, below): (&(f64, Vec<f64>), &(f64, Vec<f64>))| (above.0 - below.0) / (2.0 * step);
+            let slope = |(above, below): (&ValueAndSlopes, &ValueAndSlopes)| (above.0 - below.0) / (2.0 * step);
             above.iter().zip(&below).map(slope).collect::<Vec<_>>()
         });
         for (row, (output, at, _)) in outputs(events).into_iter().enumerate() {
