@@ -95,6 +95,12 @@ fn velocity(object: &mut Object) -> Option<Steering> {
 fn program(object: &mut Object) -> Option<Steering> {
     object.named("ProgramSteering", "Axis by two angles in a frame; each is a constant or a schedule.");
     let frame = object.field("frame", "Frame").doc("Frame of the angles.").word(&FRAMES);
+    if frame.is_none() {
+        // Which of the angles belong here is not known.
+        for name in ["pitch", "yaw", "azimuth", "right_ascension", "declination"] {
+            object.has(name);
+        }
+    }
     let pitch = object.only_unless("frame", "inertial", |object| {
         required_command(
             object.field("pitch", "Pitch").doc("Angle of the axis above the horizontal plane of the frame."),
