@@ -153,6 +153,13 @@ fn push() -> Effect {
 const AT: [f64; 3] = [0.0, 130.0, 400.0];
 const VALUE: [f64; 3] = [0.9, -0.6, 0.2];
 
+/// What is flown at an instant, whatever the number of its phase.
+fn digits(point: &FlightPoint) -> ([u64; 6], [u64; 4]) {
+    let path: [f64; 6] = point.flight_path.into();
+    let loads = [point.bank_angle, point.loads.load_factor, point.loads.deceleration, point.ground_distance];
+    (path.map(f64::to_bits), loads.map(f64::to_bits))
+}
+
 /// Since an event of a known time, a schedule is one against the time, later by that; bit for bit.
 #[test]
 fn time_since_an_event_is_time_from_there() {
@@ -166,9 +173,9 @@ fn time_since_an_event_is_time_from_there() {
                 let later = AT.map(|at| at + start);
                 let timed = fly(&banked(Against::Time, &later, &VALUE, interpolation, &case));
                 assert_eq!(since.end_time().to_bits(), timed.end_time().to_bits());
-                assert_eq!(since.last(), timed.last());
+                assert_eq!(digits(&since.last()), digits(&timed.last()));
                 for (since, timed) in rows(&since).iter().zip(rows(&timed)) {
-                    assert_eq!(since, &timed, "at {} s", timed.time);
+                    assert_eq!(digits(since), digits(&timed), "at {} s", timed.time);
                 }
             }
         }

@@ -51,7 +51,8 @@ fn rows_lie_between_the_start_and_the_end() {
     let flight = fly(&case);
     let rows = |sampling: Sampling| flight.instants(&sampling, 100).unwrap();
     assert_eq!(rows(Sampling::Count(5)), [12.5, 17.5, 22.5, 27.5, 32.5]);
-    assert_eq!(rows(Sampling::Interval(8.0)), [12.5, 20.5, 28.5, 32.5]);
+    // On the clock of the vehicle, whose rows they stand beside.
+    assert_eq!(rows(Sampling::Interval(8.0)), [12.5, 16.0, 24.0, 32.0, 32.5]);
     assert_eq!(rows(Sampling::Times(vec![5.0, 20.0, 40.0])), [12.5, 20.0, 32.5]);
     let per_step = rows(Sampling::PerStep(1));
     assert_eq!((per_step[0], *per_step.last().unwrap()), (12.5, 32.5));

@@ -207,7 +207,7 @@ async fn faults_of_columns_are_named() {
         (
             json!({"columns": ["time", "hight"]}),
             "/output/columns/1",
-            "periapsis_altitude, thrust, energy, got \"hight\"",
+            "periapsis_altitude, thrust, throttle, pitch, energy, got \"hight\"",
         ),
         (json!({"columns": ["time", 3]}), "/output/columns/1", "got a number"),
         (json!({"columns": ["time", "speed", "time"]}), "/output/columns/2", "time is given twice"),

@@ -99,7 +99,7 @@ async fn an_invalid_case_gets_its_problem() {
         "errors": [
             {"pointer": "/vehicle/mass", "detail": "must be greater than 0, got -13"},
             {"pointer": "/vehicle/colour",
-                "detail": "is not a field here; the fields are mass, reference_area, aerodynamics, nose_radius"},
+                "detail": "is not a field here; the fields are mass, parts, reference_area, aerodynamics, nose_radius"},
             {"pointer": "/initial_state/heading", "detail": "must be between -6.28319 and 6.28319, got 30 (radians); \
                                                              for degrees, set \"angle_unit\": \"deg\""},
         ],

@@ -42,7 +42,7 @@ pub struct NamedPart {
 /// A part.
 pub(super) fn part(object: &mut Object) -> Option<NamedPart> {
     object.named(
-        "Part",
+        "VehiclePart",
         "Part of a vehicle: stage, booster, fairing or payload. `reference_area`, `aerodynamics` and `nose_radius` are \
          those of the part when it flies alone.",
     );

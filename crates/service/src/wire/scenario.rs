@@ -701,6 +701,8 @@ fn is_of_name(fault: &scenario::Fault) -> bool {
         scenario::Fault::NoSuchEvent { .. }
         | scenario::Fault::NoSuchEngine { .. }
         | scenario::Fault::NoSuchPart { .. } => true,
+        // A body has as many parts as there are names of parts.
+        scenario::Fault::OutOfBounds { field, .. } if field.ends_with(".parts") => true,
         // What is wrong with its parts is said of those of the vehicle.
         scenario::Fault::OfBody { fault, .. } => {
             is_of_name(fault) || matches!(**fault, scenario::Fault::NoPressure { .. } | scenario::Fault::SphericalParts)
