@@ -38,7 +38,8 @@ fn sounding_rocket() -> Part {
 
 /// Lit at once on the surface at the zero meridian, until it burns out.
 fn burn_in_vacuum(planet: Planet, part: Part, steering: Steering) -> Case {
-    let start = PlanetFixed { position: Vector3::new(planet.equatorial_radius(), 0.0, 0.0), velocity: Vector3::zeros() };
+    let start =
+        PlanetFixed { position: Vector3::new(planet.equatorial_radius(), 0.0, 0.0), velocity: Vector3::zeros() };
     Case {
         atmosphere: Atmosphere::Vacuum,
         initial_state: start,
@@ -112,7 +113,12 @@ fn a_linear_tangent_flies_as_bryson_and_ho_say() {
 fn a_body_thrown_up_comes_down_to_the_west() {
     let planet = Planet::EARTH_WGS84.spherical();
     let start = PlanetFixed { velocity: Vector3::x() * 200.0, ..pad(&planet, 0.0, 0.0) };
-    let case = Case { atmosphere: Atmosphere::Vacuum, hold_down: false, initial_state: start, ..vehicle_of(planet, vec![load(10.0)]) };
+    let case = Case {
+        atmosphere: Atmosphere::Vacuum,
+        hold_down: false,
+        initial_state: start,
+        ..vehicle_of(planet, vec![load(10.0)])
+    };
     let last = fly(&case).last();
     let east = last.flight_path.longitude * planet.equatorial_radius();
     assert!((last.time - 40.982_782_436).abs() < 1e-6, "{}", last.time);
@@ -124,12 +130,20 @@ fn a_vehicle_is_held_until_its_thrust_exceeds_its_weight() {
     for planet in [Planet::EARTH_WGS84, earth(), Planet::EARTH_WGS84.spherical()] {
         for (area, boosted) in [(0.0, false), (0.1, false), (0.1, true)] {
             // Heavier than it can lift, at a flow of 68 kg/s.
-            let mut parts = vec![stage(1100.0, if area > 0.0 { 19_300.0 } else { 20_000.0 }, 200e3, 300.0, area), load(100.0)];
+            let mut parts =
+                vec![stage(1100.0, if area > 0.0 { 19_300.0 } else { 20_000.0 }, 200e3, 300.0, area), load(100.0)];
             if boosted {
-                parts.push(Part { count: 2, ..motor(40.0, 1000.0, &[(0.0, 0.0), (40.0, 8e3), (80.0, 0.0)], 250.0, 0.02) });
+                parts.push(Part {
+                    count: 2,
+                    ..motor(40.0, 1000.0, &[(0.0, 0.0), (40.0, 8e3), (80.0, 0.0)], 250.0, 0.02)
+                });
             }
             let lit: &[usize] = if boosted { &[0, 2] } else { &[0] };
-            let case = Case { events: vec![at(1.5, ignite(lit)), lift_off()], stop: Stop { time: 90.0, ..Stop::default() }, ..vehicle_of(planet, parts) };
+            let case = Case {
+                events: vec![at(1.5, ignite(lit)), lift_off()],
+                stop: Stop { time: 90.0, ..Stop::default() },
+                ..vehicle_of(planet, parts)
+            };
             let start = Inertial::of(&case.initial_state, &planet, 0.0, 0.0);
             let up = normal(&planet, &start.position);
             let spin = Vector3::z() * planet.rotation_rate;
@@ -200,11 +214,12 @@ fn a_body_dropped_in_vacuum_follows_an_ellipse_of_kepler() {
         if rising { angle } else { TAU - angle }
     };
     let since_periapsis = |angle: f64| (axis.powi(3) / mu).sqrt() * (angle - eccentricity * angle.sin());
-    let [first, last] = [anomaly(from.position.norm(), from.position.dot(&from.velocity) > 0.0), anomaly(radius, false)];
+    let [first, last] =
+        [anomaly(from.position.norm(), from.position.dot(&from.velocity) > 0.0), anomaly(radius, false)];
     let time = since_periapsis(last) - since_periapsis(first);
     assert!((end.time - start.time - time).abs() < 1e-6, "{} {time}", end.time - start.time);
-    let place = p * (axis * (last.cos() - eccentricity))
-        + q * (axis * (1.0 - eccentricity * eccentricity).sqrt() * last.sin());
+    let place =
+        p * (axis * (last.cos() - eccentricity)) + q * (axis * (1.0 - eccentricity * eccentricity).sqrt() * last.sin());
     assert!((to.position - place).norm() < 1e-2, "{}", (to.position - place).norm());
     // And the elements stay.
     let [a, b] = [start, end].map(|point| point.orbital_elements(&planet, 0.0).unwrap().0);
@@ -426,7 +441,15 @@ fn launch_of_oracle(case: &Case) -> Vec<Inertial> {
     let axes = launch_axes(&planet, &case.initial_state.position, AZIMUTH);
     let columns = [0, 1, 2].map(|column| axes.column(column).into_owned());
     let program = |now: &Inertial| direction(straight(&SECOND.0, &SECOND.1, now.time), 0.02, columns);
-    let rocket = |flames, axis, area, load_limit| Rocket { planet, flames, axis, area, coefficients: PLAIN, wind: [0.0; 2], load_limit };
+    let rocket = |flames, axis, area, load_limit| Rocket {
+        planet,
+        flames,
+        axis,
+        area,
+        coefficients: PLAIN,
+        wind: [0.0; 2],
+        load_limit,
+    };
     let core = || Flame { thrust: &main, specific_impulse: 300.0, exit_area: area };
     let booster = || Flame { thrust: &boost, specific_impulse: 270.0, exit_area: 0.16 };
     let upper = || Flame { thrust: &second, specific_impulse: 340.0, exit_area: 0.0 };
@@ -498,7 +521,12 @@ fn a_launcher_flies_as_an_integration_in_inertial_space_has_it() {
             assert!((event.before.time - state.time).abs() < seconds, "{what}: {} {}", event.before.time, state.time);
             // Where the instants differ, the places do.
             assert!(off < metres + seconds * event.before.inertial_speed, "{what}: {off} m off at {tolerance}");
-            assert!((event.before.mass - state.mass).abs() < 1e-2 * metres, "{what}: {} {}", event.before.mass, state.mass);
+            assert!(
+                (event.before.mass - state.mass).abs() < 1e-2 * metres,
+                "{what}: {} {}",
+                event.before.mass,
+                state.mass
+            );
         }
         let (last, end) = (flight.last(), oracle.last().unwrap());
         let off = miss(&last, end, &case.planet);
@@ -516,7 +544,12 @@ fn limit_holds(flight: &Trajectory, limit: f64) -> usize {
         // The throttle is not known better than the states between steps.
         let throttled = point.thrust > 0.0 && point.throttle < 1.0 - 1e-9 && point.loads.load_factor > limit * 0.999;
         if point.throttle > 0.0 && throttled {
-            assert!((point.loads.load_factor - limit).abs() < 1e-9 * limit, "{}: {}", point.time, point.loads.load_factor);
+            assert!(
+                (point.loads.load_factor - limit).abs() < 1e-9 * limit,
+                "{}: {}",
+                point.time,
+                point.loads.load_factor
+            );
         }
         begins += usize::from(throttled && !was);
         was = throttled;
@@ -570,7 +603,8 @@ fn an_upright_rise_under_a_table_by_angle_of_attack_needs_no_plane_of_lift() {
     let table = AlphaMachTable::new(&entries, &[0.0, 10.0], &lift, &drag).unwrap();
     for (planet, latitude) in [(earth(), 0.5), (Planet::EARTH_WGS84.spherical(), 0.0), (still(6.4e6, 4e14), 0.3)] {
         let case = vehicle_of(planet, vec![stage(800.0, 2700.0, 60e3, 280.0, 0.1), load(100.0)]);
-        let vehicle = Vehicle { aerodynamics: Aerodynamics::AlphaMachTable(Arc::new(table.clone())), ..case.vehicle.clone() };
+        let vehicle =
+            Vehicle { aerodynamics: Aerodynamics::AlphaMachTable(Arc::new(table.clone())), ..case.vehicle.clone() };
         let turn = Effect { tilt: Some(Tilt { angle: 0.02, azimuth: PI / 2.0 }), ..steer(Steering::Velocity) };
         let local = Steering::Program(Program {
             axes: ProgramAxes::Local,

@@ -272,8 +272,12 @@ fn slopes_of_an_ascent_by_a_program_under_a_load_limit() {
 fn slopes_of_an_ascent_that_ends_with_its_burn() {
     // Shut down and lit again, and the end of the flight is the burnout itself.
     let case = vehicle_of(earth(), vec![stage(800.0, 2700.0, 90e3, 280.0, 0.12), load(500.0)]);
-    let events =
-        vec![at(0.0, ignite(&[0])), lift_off(), at(20.0, shut_down(&[0])), on(rises(Quantity::Time, 22.0), ignite(&[0]))];
+    let events = vec![
+        at(0.0, ignite(&[0])),
+        lift_off(),
+        at(20.0, shut_down(&[0])),
+        on(rises(Quantity::Time, 22.0), ignite(&[0])),
+    ];
     for delay in [0.0, 2.0] {
         let stop = Stop { when: vec![Trigger::AfterBurnout { part: 0, delay }], ..Stop::default() };
         let case = Case { events: events.clone(), stop, ..case.clone() };

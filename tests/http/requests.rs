@@ -201,7 +201,10 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
         ),
         ("columns", with(&flight(), "/output/columns", json!(["time", "altitude"]))),
         ("no bodies", with(&flight(), "/output/bodies", "none")),
-        ("nearest site", with(&flight(), "/output/sites", true)),
+        (
+            "nearest site",
+            with_all(&flight(), [("/planet", json!({"model": "earth_wgs84"})), ("/output/sites", json!(true))]),
+        ),
         (
             "heating",
             with(
