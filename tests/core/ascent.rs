@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Effect, Event, Quantity, Separation, Throttle, Tilt, Trigger};
 use reentry::part::Part;
@@ -52,7 +52,7 @@ fn burn_in_vacuum(planet: Planet, part: Part, steering: Steering) -> Case {
 }
 
 fn inertial_program(axes: Matrix3<f64>, pitch: Command, yaw: Command) -> Steering {
-    Steering::Program(Program { axes: ProgramAxes::Inertial(axes), pitch, yaw })
+    Steering::Program(Program { axes: ProgramAxes::Inertial(Rotation3::from_matrix_unchecked(axes)), pitch, yaw })
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_linear_tangent_flies_as_bryson_and_ho_say() {
     // 20 m/s² for 100 s, which burn 2e-7 of the mass.
     let part = stage(1000.0, 1.0, 20_000.0 * 1.001, 1e9, 0.0);
     let axes = Matrix3::from_columns(&[Vector3::z(), -Vector3::y(), Vector3::x()]);
-    let steering = Steering::LinearTangent { axes, a: 1.0, b: 0.02 };
+    let steering = Steering::LinearTangent { axes: Rotation3::from_matrix_unchecked(axes), a: 1.0, b: 0.02 };
     let case = burn_in_vacuum(still(1e6, 1e-3), part, steering);
     let case = Case { stop: Stop { time: 100.0, ..Stop::default() }, ..case };
     let last = fly(&case).last().flight_path.to_planet_fixed();
@@ -347,14 +347,14 @@ fn programs_point_as_their_axes_and_schedules_say() {
     };
     let program = Steering::Program(Program { axes: ProgramAxes::Local, pitch, yaw });
     agree_on_a_climb("local", &steered(program), &local, PLAIN, None);
-    let tangent = Steering::LinearTangent { axes, a: 2.0, b: 0.05 };
+    let tangent = Steering::LinearTangent { axes: Rotation3::from_matrix_unchecked(axes), a: 2.0, b: 0.05 };
     let by_tangent = |now: &Inertial| direction((2.0 - 0.05 * now.time).atan(), 0.0, columns);
     agree_on_a_climb("linear tangent", &steered(tangent), &by_tangent, PLAIN, None);
     agree_on_a_climb(
         "load limit",
         &Case {
             events: vec![at(0.0, Effect { load_limit: Some(Some(3.1)), ..ignite(&[0]) })],
-            ..steered(Steering::LinearTangent { axes, a: 2.0, b: 0.05 })
+            ..steered(Steering::LinearTangent { axes: Rotation3::from_matrix_unchecked(axes), a: 2.0, b: 0.05 })
         },
         &by_tangent,
         PLAIN,

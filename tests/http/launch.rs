@@ -101,6 +101,11 @@ async fn names_are_those_of_parts_all_at_once() {
     ];
     let expected: Vec<_> = pointers.into_iter().zip(texts.iter().map(String::as_str)).collect();
     steady.refused_at("/simulate", &request, &expected).await;
+    // What such a body weighs is not asked.
+    let ballistic = json!({"type": "ballistic", "ballistic_coefficient": 100});
+    let unknown = json!([{"name": "b", "parts": ["x"], "aerodynamics": ballistic}]);
+    let request = but("/events/2/then/separate", unknown);
+    steady.refused_at("/simulate", &request, &[("/events/2/then/separate/0/parts/0", parts)]).await;
     // Many names are not told one by one.
     let many: Vec<_> = (0..30).map(|index| json!({"name": format!("part {index}"), "dry_mass": 1})).collect();
     let request = with_all(

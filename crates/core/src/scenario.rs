@@ -16,6 +16,8 @@ use bounds::out_of_bounds;
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+
 use crate::atmosphere::Atmosphere;
 use crate::control::{Against, Command, Control};
 use crate::coordinates::{GreatCircle, PlanetFixed};
@@ -389,6 +391,14 @@ impl Scenario {
         faults.extend(case.effect_faults());
         faults.extend(case.part_faults());
         faults.extend((case.heating.is_some() && case.vehicle.nose_radius.is_none()).then_some(Fault::NoNoseRadius));
+        if case.hold_down && state.velocity != Vector3::zeros() {
+            let bound = Bound { minimum: 0.0, exclusive: false, maximum: 0.0 };
+            faults.push(Fault::OutOfBounds {
+                field: "initial_state.speed".into(),
+                value: state.velocity.norm(),
+                bound,
+            });
+        }
         if faults.is_empty() {
             if altitude < case.stop.altitude - ON_STOP_ALTITUDE {
                 faults.push(Fault::BelowStopAltitude { altitude, stop: case.stop.altitude });
@@ -705,7 +715,16 @@ impl Case {
                         Some(None) => {}
                     }
                 }
-                let Some(body) = self.bodies.get(separation.body) else { continue };
+                let Some(body) = self.bodies.get(separation.body) else {
+                    let field = format!("{place}.separate.{at}.body").into();
+                    faults.push(count_fault(field, separation.body, [0, self.bodies.len().saturating_sub(1)]));
+                    continue;
+                };
+                let count = body.case.parts.len();
+                if count != separation.parts.len() {
+                    let field = format!("{place}.separate.{at}.parts").into();
+                    faults.push(count_fault(field, separation.parts.len(), [count; 2]));
+                }
                 let of_body = |fault| Fault::OfBody { field: format!("{place}.separate.{at}"), fault: Box::new(fault) };
                 faults.extend(body.case.faults_of_body().into_iter().map(of_body));
             }
@@ -811,6 +830,13 @@ impl Case {
         }
         true
     }
+}
+
+/// A count or a place in a list that is not one of those that it may be.
+#[expect(clippy::cast_precision_loss, reason = "lists are short")]
+fn count_fault(field: Cow<'static, str>, got: usize, [least, most]: [usize; 2]) -> Fault {
+    let bound = Bound { minimum: least as f64, exclusive: false, maximum: most as f64 };
+    Fault::OutOfBounds { field, value: got as f64, bound }
 }
 
 /// What is wrong with a planet, and with a stop altitude on it.

@@ -153,7 +153,7 @@ pub enum Warning {
         /// s.
         time: f64,
     },
-    /// An impulse had no direction: along a velocity of none, or across the vertical.
+    /// An impulse had no direction: along a velocity of none, or across the vertical; or the vehicle was held on the ground, which took it.
     NoDirection {
         /// The number of its event.
         event: usize,
@@ -708,7 +708,7 @@ impl Trajectory {
             ground_distance: length * sphere,
             mass,
             thrust: phase.thrust.map_or(thrust, |thrust| thrust.force.abs()),
-            throttle: if has_parts { throttle * phase.throttle() } else { throttle },
+            throttle: if has_parts { throttle * phase.throttle(time) } else { throttle },
             pitch: has_parts.then(|| forces.pitch(time, state)),
             phase: 0,
             heat_load: state.heat_load.filter(|_| forces.heating().is_some()),

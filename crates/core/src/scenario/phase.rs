@@ -132,13 +132,12 @@ impl<P: Scalar<Value = f64, Mask = bool>> PartState<P> {
         let count = f64::from(numbers.case().parts[part].count);
         engine.thrust.entry(number)?;
         let [thrust, time] = [entry(number, |entry| entry.thrust) * count, entry(number, |entry| entry.time)];
-        let (rate, until) = match engine.thrust.entry(number + 1) {
-            None => (P::zero(), None),
-            Some(_) => {
-                let [then, end] =
-                    [entry(number + 1, |entry| entry.thrust) * count, entry(number + 1, |entry| entry.time)];
-                ((then - thrust) * (end - time).recip(), Some(ignition + end))
-            }
+        let next = number + 1;
+        let (rate, until) = if engine.thrust.entry(next).is_some() {
+            let [then, end] = [entry(next, |entry| entry.thrust) * count, entry(next, |entry| entry.time)];
+            ((then - thrust) * (end - time).recip(), Some(ignition + end))
+        } else {
+            (P::zero(), None)
         };
         let mass_flow_of_unit = of_engine(|engine| Engine::mass_flow_of_unit(engine.specific_impulse));
         let exit_area = of_engine(|engine| engine.exit_area) * count;
@@ -219,11 +218,18 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
         }
     }
 
-    /// The share of the thrust in vacuum of all parts that burn that their throttles leave, where the phase begins.
-    pub(crate) fn throttle(&self) -> P {
-        let sum = |of: fn(&PartState<P>) -> P| self.lit().fold(P::zero(), |sum, (_, part)| sum + of(part));
-        let full = sum(|part| part.burn.map_or(P::zero(), |burn| burn.thrust));
-        if full.value() > 0.0 { sum(PartState::thrust) * full.recip() } else { P::one() }
+    /// The share of the thrust in vacuum of all parts that burn that their throttles leave, at a time, s.
+    pub(crate) fn throttle(&self, time: P) -> P {
+        let share = |weight: &dyn Fn(&ThrustPiece<P>) -> P| {
+            let weights = self.lit().filter_map(|(_, part)| Some((part.throttle, weight(part.burn.as_ref()?))));
+            let sums = |(full, left): (P, P), (throttle, weight): (P, P)| (full + weight, left + throttle * weight);
+            let (full, left) = weights.fold((P::zero(), P::zero()), sums);
+            (full.value() > 0.0).then(|| left * full.recip())
+        };
+        let elapsed = time - self.since;
+        // Thrusts that begin with nothing rise in proportion of their rates.
+        let of_thrusts = share(&|burn| burn.thrust + burn.rate * elapsed);
+        of_thrusts.or_else(|| share(&|burn| burn.rate)).unwrap_or_else(P::one)
     }
 
     /// The parts that burn, with their places.
@@ -246,6 +252,10 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
 
     /// The share of a part in the mass flow of all.
     fn share(&self, part: &PartState<P>) -> P {
+        // Also where its thrust begins with nothing.
+        if self.lit().count() == 1 {
+            return P::one();
+        }
         let all = self.lit().fold(P::zero(), |flow, (_, part)| flow + part.mass_flow());
         if all.value() > 0.0 { part.mass_flow() * all.recip() } else { P::zero() }
     }
@@ -410,14 +420,23 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
 
     /// When time alone changes something next, s, and what.
     pub(crate) fn next_change(&self) -> Option<(P, Change)> {
+        self.changes().min_by(|a, b| a.0.value().total_cmp(&b.0.value()))
+    }
+
+    /// When time alone makes a change, s.
+    pub(crate) fn time_of(&self, change: Change) -> Option<P> {
+        self.changes().find(|(_, other)| *other == change).map(|(time, _)| time)
+    }
+
+    /// What time alone changes, and when, s.
+    fn changes(&self) -> impl Iterator<Item = (P, Change)> {
         let of_thrust = self.thrust_end().map(|end| (end, Change::ThrustEnds));
         let of_canopies = self.next_inflation().map(|inflation| (inflation, Change::Inflation));
         let burnout = |part: &PartState<P>| part.time_to_burnout().filter(|_| self.load_limit.is_none());
         let burnouts =
-            self.lit().filter_map(|(place, part)| Some((self.since + burnout(part)?, Change::Burnout(place))));
+            self.lit().filter_map(move |(place, part)| Some((self.since + burnout(part)?, Change::Burnout(place))));
         let pieces = self.lit().filter_map(|(place, part)| Some((part.burn?.until?, Change::NextPiece(place))));
-        let all = of_thrust.into_iter().chain(of_canopies).chain(burnouts).chain(pieces);
-        all.min_by(|a, b| a.0.value().total_cmp(&b.0.value()))
+        of_thrust.into_iter().chain(of_canopies).chain(burnouts).chain(pieces)
     }
 
     /// The change after which a phase begins at a time, s, with a cause: the last piece of a thrust profile ends with a burnout.
@@ -462,8 +481,13 @@ impl<P: Scalar<Value = f64, Mask = bool>> Phase<P> {
     fn on_next_piece(&self, part: usize, numbers: &impl Numbers<P>, time: P, mass: P) -> Self {
         let mut parts = self.parts_at(time, mass);
         let next = parts[part].burn.and_then(|burn| PartState::piece(numbers, part, burn.ignition, burn.number + 1));
-        // The last entry of a profile has no piece behind it.
-        parts[part].burn = next.filter(|piece| piece.until.is_some());
+        // The last entry of a profile has no piece behind it. Where another change comes at the same time, the piece may be met a little later
+        // or sooner than it begins, as numbers vary.
+        let met = |burn: ThrustPiece<P>| {
+            let begins = self.parts[part].burn.and_then(|burn| burn.until).unwrap_or(time);
+            ThrustPiece { thrust: burn.thrust + burn.rate * (time - begins), ..burn }
+        };
+        parts[part].burn = next.filter(|piece| piece.until.is_some()).map(met);
         let cause = if parts[part].burn.is_some() { Change::NextPiece(part) } else { Change::Burnout(part) };
         Self { since: time, parts, cause, ..self.clone() }.weighed()
     }

@@ -101,10 +101,10 @@ struct Follower<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize
     ground_distance: Dual<W>,
     /// The great circle from which ranges are measured.
     track: GreatCircle<Dual<W>>,
-    /// How much later each event happens as the numbers vary.
-    delays: Vec<Dual<W>>,
-    /// How much later each part burns out.
-    burnout_delays: Vec<Dual<W>>,
+    /// How much later each event happens as the numbers vary; none of one that has not happened yet.
+    delays: Vec<Option<Dual<W>>>,
+    /// How much later each part burns out, for the first time; none of one that has not burnt out yet.
+    burnout_delays: Vec<Option<Dual<W>>>,
     /// How many of the records have happened.
     happened: usize,
     samples: Vec<Option<Sample<W>>>,
@@ -130,8 +130,8 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             phase,
             ground_distance: Dual::from(0.0),
             track: GreatCircle::of(&varied.track_start()),
-            delays: vec![Dual::from(0.0); flight.case.events.len()],
-            burnout_delays: vec![Dual::from(0.0); flight.case.parts.len()],
+            delays: vec![None; flight.case.events.len()],
+            burnout_delays: vec![None; flight.case.parts.len()],
             happened: 0,
             samples: vec![None; of.places.len()],
         };
@@ -214,17 +214,42 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             return;
         }
         let records = &records[..now];
+        let mut end_of_step = index.checked_sub(1).map(Place::StepEnd);
+        let last = records.first().map_or(step.phase.saturating_sub(1), |record| record.before.phase);
+        while self.phase_index < last {
+            self.change_alone(time, end_of_step.take());
+        }
         let rates = self.motion.derivative(time.into(), &self.state);
         let delay = self.turning_delay(records, step.mode, time, &rates);
         // During the delay the rates before the change hold in place of those after it.
         self.move_by(&rates, delay);
         let instant = delay + time;
-        if index > 0 {
-            self.keep(Place::StepEnd(index - 1), instant);
+        if let Some(place) = end_of_step {
+            self.keep(place, instant);
         }
         self.let_happen(records, delay);
         self.enter(step.phase, delay, step.mode);
         self.keep(Place::StepStart(index), instant);
+        let next = self.motion.derivative(time.into(), &self.state);
+        self.move_by(&next, -delay);
+    }
+
+    /// Enters the next phase, to which time alone leads, as much later as that comes by itself: what comes at the same time may do so sooner
+    /// or later. Keeps the present state for a place before that, if there is one.
+    fn change_alone(&mut self, time: f64, before: Option<Place>) {
+        let number = self.phase_index + 1;
+        let rates = self.motion.derivative(time.into(), &self.state);
+        let delay = self.turning_delay(&[], self.forces.mode(), time, &rates);
+        self.move_by(&rates, delay);
+        if let Some(place) = before {
+            self.keep(place, delay + time);
+        }
+        let Follow { flight, varied, .. } = self.of;
+        let mut plain = flight.flown.phases[number].forces(varied.case);
+        plain.enter(self.forces.mode());
+        // The flight would have ended where none holds.
+        let _ = plain.enter_mode_of(time, &F::state(&self.state.map(|number| number.re)));
+        self.enter(number, delay, plain.mode());
         let next = self.motion.derivative(time.into(), &self.state);
         self.move_by(&next, -delay);
     }
@@ -241,7 +266,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         for record in records {
             let place = self.happened;
             let instant = delay + record.before.time;
-            self.delays[record.event] = delay;
+            self.delays[record.event] = Some(delay);
             self.change_by_time(record.before.phase, delay);
             self.keep(Place::Before(place), instant);
             self.apply_tilt(record);
@@ -273,7 +298,7 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             let Phase { since, cause, .. } = &self.of.flight.flown.phases[self.phase_index];
             let change = self.phase.change_to(*cause, *since);
             if let Change::Burnout(part) = *cause {
-                self.burnout_delays[part] = delay;
+                self.burnout_delays[part].get_or_insert(delay);
             }
             self.set_phase(self.phase.after_change(change, &self.of.varied, delay + *since, self.mass()));
         }
@@ -307,7 +332,9 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
     /// Changes the velocity by the impulse of an event, if it has one.
     fn apply_impulse(&mut self, record: &EventRecord, delay: Dual<W>) {
         let Follow { flight, varied, .. } = self.of;
-        let Some(impulse) = flight.case.events[record.event].then.impulse else { return };
+        let effect = &flight.case.events[record.event].then;
+        let is_held = self.phase.held && !effect.lift_off;
+        let Some(impulse) = effect.impulse.filter(|_| !is_held) else { return };
         let time = record.before.time;
         let state = F::state(&self.state);
         let of_event = |case: &Case| case.events[record.event].then.impulse;
@@ -334,21 +361,26 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let flown = &self.of.flight.flown;
         let time = flown.end.time;
         let rates = self.motion.derivative(time.into(), &self.state);
-        let delay = self.final_delay(&rates);
+        let records = &flown.event_records[self.happened..];
+        let delay = self.final_delay(records, &rates);
         self.move_by(&rates, delay);
         if let Some(last) = flown.steps.len().checked_sub(1) {
             self.keep(Place::StepEnd(last), delay + time);
         }
-        let records = &flown.event_records[self.happened..];
         self.let_happen(records, delay);
         self.enter(flown.end.phase, delay, flown.end.mode);
         self.keep(Place::End, delay + time);
     }
 
     /// How much later the flight ends as the numbers vary, s.
-    fn final_delay(&self, rates: &[Dual<W>; N]) -> Dual<W> {
+    fn final_delay(&self, records: &[EventRecord], rates: &[Dual<W>; N]) -> Dual<W> {
         let Follow { flight, varied, .. } = self.of;
         let (case, time) = (&flight.case, flight.flown.end.time);
+        // What is met together with its cause comes as much later.
+        let or_cause = |delay: Option<Dual<W>>, after: &dyn Fn(&Case) -> f64| match delay {
+            Some(delay) => delay + self.later(after),
+            None => self.turning_delay(records, flight.flown.end.mode, time, rates) + self.later(after),
+        };
         match flight.flown.arrival.termination {
             Termination::TimeLimit => {
                 let limit = varied.number(|case| case.stop.time);
@@ -367,11 +399,9 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
                     let value = varied.number(|case| value_of(&case.stop.when[index]));
                     self.condition_delay(quantity, value, time, rates)
                 }
-                Trigger::After { event, .. } => {
-                    self.delays[event] + self.later(|case| value_of(&case.stop.when[index]))
-                }
+                Trigger::After { event, .. } => or_cause(self.delays[event], &|case| value_of(&case.stop.when[index])),
                 Trigger::AfterBurnout { part, .. } => {
-                    self.burnout_delays[part] + self.later(|case| value_of(&case.stop.when[index]))
+                    or_cause(self.burnout_delays[part], &|case| value_of(&case.stop.when[index]))
                 }
             },
         }
@@ -393,21 +423,23 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
                     let delay = || self.condition_delay(condition.quantity, varied.number(value), time, rates);
                     self.meets(&condition, time).then(delay)
                 }
-                Trigger::After { event, .. } => Some(self.delays[event] + self.later(value)),
-                Trigger::AfterBurnout { part, .. } => Some(self.burnout_delays[part] + self.later(value)),
+                // One that waits no time for what happens now comes with it.
+                Trigger::After { event, .. } => self.delays[event].map(|delay| delay + self.later(value)),
+                Trigger::AfterBurnout { part, .. } => self.burnout_delays[part].map(|delay| delay + self.later(value)),
             }
         };
         if let Some(delay) = now.iter().find_map(delay_of) {
             return delay;
         }
-        if let Some((change, _)) = self.phase.next_change().filter(|(change, _)| change.re <= time) {
-            return change - change.re;
-        }
-        let next_cause = flight.flown.phases.get(self.phase_index + 1).filter(|next| next.since <= time);
-        if let (Some((mass, _)), Some(Change::Burnout(_))) =
-            (self.phase.burnout_mass(), next_cause.map(|next| next.cause))
-        {
-            return self.condition_delay(Quantity::Mass, mass, time, rates);
+        let next_phase = flight.flown.phases.get(self.phase_index + 1).filter(|next| next.since <= time);
+        if let Some(change) = next_phase.map(|phase| self.phase.change_to(phase.cause, phase.since)) {
+            // Not all of them come by time alone: events do not, nor a burnout under a load limit.
+            if let Some(changes) = self.phase.time_of(change) {
+                return changes - changes.re;
+            }
+            if let (Some((mass, _)), Change::Burnout(_)) = (self.phase.burnout_mass(), change) {
+                return self.condition_delay(Quantity::Mass, mass, time, rates);
+            }
         }
         let plain = &self.forces.plain;
         let values = F::state(&self.state.map(|number| number.re));

@@ -257,9 +257,9 @@ impl ConditionDetector {
         Some(cause)
     }
 
-    /// Something has happened at a time, s, from which others count.
+    /// Something has happened at a time, s, from which others count; not for the first time, if a part burns out that was lit again.
     pub(super) fn happened(&mut self, cause: Cause, time: f64) {
-        for pending in &mut self.all {
+        for pending in self.all.iter_mut().filter(|pending| pending.status == Status::Dormant) {
             if let Some((_, delay)) = pending.waits_for.filter(|(other, _)| *other == cause) {
                 pending.condition.value = time + delay;
                 pending.status = Status::Armed;

@@ -57,6 +57,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         let time = case.start_time;
         let start = State::from(case.initial_state);
         let phase = Phase::first(case);
+        weighs(&phase, time)?;
         let state = F::numbers(&State { mass: Some(phase.vehicle.mass), heat_load: Some(0.0), ..start });
         regular(&motion, time, &state)?;
         enter_mode_of(&mut motion, time, &state)?;
@@ -84,10 +85,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
         let is_on_ground = self.scenario.starts_on_stop_altitude() && !self.phase.held;
+        // The time of a body may be over before it is set free.
+        let ending = self.time_limit();
         if !self.conditions.is_empty() {
-            return self.apply_changes(None, None, is_on_ground);
+            return self.apply_changes(None, ending, is_on_ground);
         }
-        Ok((is_on_ground && !self.lifts_off()).then(|| self.arrival(self.ground())))
+        let ending = ending.or_else(|| (is_on_ground && !self.lifts_off()).then(|| self.ground()));
+        Ok(ending.map(|ending| self.arrival(ending)))
     }
 
     /// Whether a flight that starts on the stop altitude, and on which all has happened that happens at t = 0, leaves it upward.
@@ -100,6 +104,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.stop_altitude.start_upward();
         }
         lifts_off
+    }
+
+    /// The end of the flight by its time, if that is over.
+    fn time_limit(&self) -> Option<Termination> {
+        (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit)
     }
 
     /// How a flight ends on the stop altitude.
@@ -149,6 +158,9 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         model_boundaries.follow(&view);
         conditions.follow(&view);
         (self.time, self.state) = (view.step.end_time, view.step.end);
+        if self.state.get(MASS).is_some_and(|mass| *mass <= NOTHING * self.phase.vehicle.mass) {
+            return Err(SimulationError::NothingLeft { time: self.time });
+        }
         let halted = halts(motion, self.time, &self.state);
         if !halted {
             regular(motion, self.time, &self.state)?;
@@ -160,7 +172,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.halt();
         }
 
-        let mut ending = (self.time >= self.scenario.case().stop.time).then_some(Termination::TimeLimit);
+        let mut ending = self.time_limit();
         let mut crossing = None;
         match (at_condition, at_boundary, at_stop_altitude) {
             (Some(condition), ..) => self.conditions.meet(condition),
@@ -210,6 +222,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Lets all happen that is met at the present instant; returns whether the flight leaves the stop altitude, if it `is_on_ground`.
     fn let_events_happen(&mut self, is_on_ground: bool) -> Result<bool, SimulationError> {
+        let was_held = self.phase.held;
         self.detect_jumps();
         loop {
             while let Some(cause) = self.conditions.next_event(self.time) {
@@ -220,7 +233,9 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
                 self.change_by_time()?;
                 self.detect_jumps();
             }
-            if is_on_ground && !self.lifts_off() {
+            // What is set free without a thrust that lifts it is on the ground as well.
+            let is_free = was_held && !self.phase.held && self.scenario.starts_on_stop_altitude();
+            if (is_on_ground || is_free) && !self.lifts_off() {
                 return Ok(false);
             }
             // What else moves on from its value is known when all that changes the motion has happened.
@@ -300,7 +315,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.set_velocity(motion::tilted(&state, angle, azimuth));
         }
         if let Some(impulse) = effect.impulse {
-            self.apply_impulse(event, impulse);
+            if self.phase.held && !effect.lift_off {
+                self.log.warnings.push(Warning::NoDirection { event, time: self.time });
+            } else {
+                self.apply_impulse(event, impulse);
+            }
         }
         if effect.lift_off && self.phase.held {
             self.stop_altitude.start_upward();
@@ -322,12 +341,13 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.log.warnings.push(Warning::ThrustWithoutDirection { event, time });
         }
         let is_there = |parachute: &usize| self.phase.canopies.iter().any(|canopy| canopy.event == *parachute);
-        let parts = &self.phase.parts;
-        let unlit = effect.ignite.iter().filter(|part| !parts[**part].is_there || parts[**part].burn.is_some());
-        self.log.warnings.extend(unlit.map(|part| {
-            let is_there = parts[*part].is_there;
-            Warning::NotLit { event, part: *part, is_there, time }
-        }));
+        // What is separated or shut down by the same event is so before.
+        let leaves = |part: &usize| effect.separate.iter().any(|separation| separation.parts.contains(part));
+        let stays = |part: &usize| self.phase.parts[*part].is_there && !leaves(part);
+        let burns = |part: &usize| self.phase.parts[*part].burn.is_some() && !effect.shut_down.contains(part);
+        let unlit = effect.ignite.iter().filter(|part| !stays(part) || burns(part));
+        let unlit = unlit.map(|part| Warning::NotLit { event, part: *part, is_there: stays(part), time });
+        self.log.warnings.extend(unlit);
         let missing = effect.release.iter().filter(|parachute| !is_there(parachute));
         self.log.warnings.extend(missing.map(|parachute| Warning::NotDeployed { event, parachute: *parachute, time }));
     }
@@ -380,6 +400,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if let Some(mass) = self.state.get_mut(MASS) {
             *mass = phase.vehicle.mass;
         }
+        weighs(&phase, self.time)?;
         if phase.has_unknown_shares() {
             return Err(SimulationError::UnknownShares { time: self.time });
         }
@@ -469,6 +490,11 @@ fn halts<F: Formulation<N>, const N: usize>(motion: &F, time: f64, state: &[f64;
     at_rest && forces.brakes_to_rest(time, &named)
 }
 
+/// Refuses a vehicle of which nothing is left.
+fn weighs(phase: &Phase, time: f64) -> Result<(), SimulationError> {
+    if phase.vehicle.mass > 0.0 { Ok(()) } else { Err(SimulationError::NothingLeft { time }) }
+}
+
 /// Refuses a state in which the equations break down.
 pub(super) fn regular<F: Formulation<N>, const N: usize>(
     motion: &F,
@@ -491,5 +517,7 @@ const FORESIGHT: f64 = 3e-3;
 const MOVES: f64 = 1e-6;
 /// An integration under a thrust by the velocity that fails at less than this part of the circular speed fails because of it.
 const NEARLY_AT_REST: f64 = 1e-4;
+/// Of a mass of which no more than this part is left, nothing is: a rounding of what was there.
+const NOTHING: f64 = 1e-12;
 /// An integration that fails where no more than this part of the mass is left fails because of it.
 const NEARLY_NOTHING: f64 = 1e-2;

@@ -7,11 +7,11 @@ use reentry::scenario::Bound;
 use reentry::vehicle::Aerodynamics;
 use serde_json::json;
 
+use super::aerodynamics::aerodynamics;
 use super::description::Object;
 use super::reader::{Fault, MOST_ENTRIES, NumberOrList};
 use super::schema::is;
 use super::shown::quoted;
-use super::vehicle::aerodynamics;
 
 /// The greatest number of parts of a vehicle.
 pub const MOST_PARTS: usize = 100;
@@ -138,6 +138,10 @@ fn engine(object: &mut Object) -> Option<(Engine, bool)> {
     if gives_sea_level && exit_area.is_some() {
         object.fault_of("exit_area", "must not be given together with thrust/sea_level, which defines it");
     }
+    object.condition(|| {
+        let by_sea_level = json!({"properties": {"thrust": {"required": ["sea_level"]}}, "required": ["thrust"]});
+        json!({"if": by_sea_level, "then": {"properties": {"exit_area": false}}})
+    });
     let of_thrusts = match (&profile, sea_level) {
         (ThrustProfile::Constant(vacuum), Some(sea_level)) => Some(Engine::exit_area(*vacuum, sea_level)),
         _ => None,

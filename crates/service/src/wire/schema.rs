@@ -173,7 +173,8 @@ impl<'a> ObjectSchema<'a> {
         let (known, required, conditions) = (self.properties.len(), self.required.len(), self.all_of.len());
         let outer = std::mem::take(&mut self.conditions);
         describe(self);
-        self.required.truncate(required);
+        let mut required = self.required.split_off(required);
+        required.retain(|field| field != name && !shared.iter().any(|shared| field == shared));
         let mut conditions = self.all_of.split_off(conditions);
         let own = std::mem::replace(&mut self.conditions, outer);
         if !own.is_empty() {
@@ -183,8 +184,15 @@ impl<'a> ObjectSchema<'a> {
             self.properties.keys().skip(known).filter(|other| *other != name && !shared.contains(&other.as_str()));
         let absent: Map<_, _> = others.map(|other| (other.clone(), json!(false))).collect();
         let mut keywords = json!({"if": {"required": [name]}, "else": {"properties": absent}});
+        let mut then = json!({});
+        if !required.is_empty() {
+            then["required"] = json!(required);
+        }
         if !conditions.is_empty() {
-            keywords["then"] = json!({"allOf": conditions});
+            then["allOf"] = json!(conditions);
+        }
+        if then != json!({}) {
+            keywords["then"] = then;
         }
         self.all_of.push(keywords);
     }

@@ -74,7 +74,8 @@ function own(): Example[] {
   return Object.entries(OWN).map(([file, notes]) => {
     const request = read(`openapi/examples/${file}.json`);
     const isEarth = (request.planet?.model ?? 'earth').startsWith('earth');
-    return { group: isEarth ? 'Missions' : 'Other planets', title: request.name, case: request, notes };
+    const group = request.initial_state?.type === 'launch' ? 'Launches' : isEarth ? 'Missions' : 'Other planets';
+    return { group, title: request.name, case: request, notes };
   });
 }
 

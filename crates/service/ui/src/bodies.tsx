@@ -16,14 +16,22 @@ export function Bodies() {
     <section class="panel" aria-label="Separated bodies">
       <h2>Separated bodies</h2>
       <Scroll label="Table of separated bodies">
-        <table class="bodies">
+        <table>
           <thead>
             <tr>
               <th scope="col">Body</th>
-              {hasParents && <th scope="col">Left</th>}
-              <th scope="col">Separated by</th>
+              {hasParents && (
+                <th scope="col" class="word">
+                  Left
+                </th>
+              )}
+              <th scope="col" class="word">
+                Separated by
+              </th>
               <th scope="col">at, s</th>
-              <th scope="col">End</th>
+              <th scope="col" class="word">
+                End
+              </th>
               <th scope="col">at, s</th>
               <th scope="col">Final position</th>
               <th scope="col">Final speed, {unitOf('speed', angleUnit.value)}</th>
@@ -49,10 +57,10 @@ function Row({ body, colour, hasParents }: { body: Body; colour: number; hasPare
         <span class={`swatch run-${colour}`} />
         {name}
       </th>
-      {hasParents && <td>{parent ?? 'vehicle'}</td>}
-      <td>{separatedBy}</td>
+      {hasParents && <td class="word">{parent ?? 'vehicle'}</td>}
+      <td class="word">{separatedBy}</td>
       <td>{number(separatedAt, 5)}</td>
-      <td>{capital(endOf(flight.answer))}</td>
+      <td class="word">{capital(endOf(flight.answer))}</td>
       <td>{number(flight.final.time ?? Number.NaN, 5)}</td>
       <td>{placeOf(flight.final, angleUnit.value)}</td>
       <td>{number(flight.final.speed ?? Number.NaN, 4)}</td>

@@ -1,4 +1,5 @@
 import { useRef, useState } from 'preact/hooks';
+import type { Case } from './api';
 import { get, legible, type Path, set, turned } from './case';
 import { number } from './figures';
 import { angleUnit, caseUnit, draft } from './store';
@@ -36,6 +37,29 @@ const SLIDERS: Slider[] = [
   { label: 'Air density', path: ['density_factor'], unit: '×', range: () => [0.5, 1.5], without: 1 },
 ];
 
+const LAUNCH_AZIMUTH: Slider = {
+  label: 'Launch azimuth',
+  path: ['initial_state', 'azimuth'],
+  unit: '°',
+  isAngle: true,
+  range: (value) => [value - 45, value + 45],
+  without: 0,
+};
+
+/** The sliders that a case may have: of a launch its azimuth, and the angle of its first tilt, by which it begins to turn. */
+function slidersOf({ initial_state, events }: Case): Slider[] {
+  if (initial_state?.type !== 'launch') return SLIDERS;
+  const tilt = Array.isArray(events) ? events.findIndex((event) => get(event, ['then', 'tilt', 'angle']) !== undefined) : -1;
+  const tilts: Slider = {
+    label: 'Tilt',
+    path: ['events', tilt, 'then', 'tilt', 'angle'],
+    unit: '°',
+    isAngle: true,
+    range: (value) => [Math.max(value - 3, 0), value + 3],
+  };
+  return [LAUNCH_AZIMUTH, ...(tilt < 0 ? [] : [tilts]), ...SLIDERS];
+}
+
 const STEPS = 1000;
 
 /** The range of a slider, which has the value in it even where that is none that could be flown. */
@@ -46,7 +70,7 @@ function rangeOf(slider: Slider, value: number): [number, number] {
 
 /** Sliders: the flight changes while they move. */
 export function Sliders() {
-  const shown = SLIDERS.filter((slider) => typeof (get(draft.value, slider.path) ?? slider.without) === 'number');
+  const shown = slidersOf(draft.value).filter((slider) => typeof (get(draft.value, slider.path) ?? slider.without) === 'number');
   return (
     <fieldset class="sliders">
       <legend>Sliders</legend>

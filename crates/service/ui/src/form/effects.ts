@@ -57,7 +57,7 @@ export function effectInWords(then: unknown, units: Units): string {
 
 /** The label of a quantity, and its unit. */
 function titleOf(quantity: string): [string, string] {
-  const title = schema.Quantity?.['x-titles']?.[quantity] ?? quantity;
+  const title = String(get(schema.Quantity?.['x-titles'], [quantity]) ?? quantity);
   const [label = quantity, unit = ''] = title.split(', ');
   return [label, unit];
 }
@@ -89,6 +89,6 @@ function throttled(throttle: unknown): string {
 function steering(steer: unknown): string {
   const type = String(get(steer, ['type']));
   const of = schema.Steering;
-  const reference = of?.discriminator?.mapping[type];
+  const reference = get(of?.discriminator?.mapping, [type]);
   return (of?.variants?.find(({ $ref }) => $ref === reference)?.title ?? type).toLowerCase();
 }

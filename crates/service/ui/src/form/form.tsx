@@ -121,7 +121,7 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
         </Line>
       );
     case 'json':
-      return <Json label={field.label} path={path} />;
+      return <Json label={`${field.label} (JSON)`} path={path} />;
     case 'site':
       return <LaunchPlace path={path} />;
     case 'parts':

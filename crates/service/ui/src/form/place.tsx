@@ -5,7 +5,7 @@ import { isEarth, modelOf } from '../planets';
 import { found, KINDS, type ListedSite, loadSites, sites, titleOfSite } from '../sites';
 import { draft } from '../store';
 import { launchAt, launchFrom } from './launch';
-import { Line, put, select } from './line';
+import { Block, Line, put, select } from './line';
 
 /** Where a launch begins: a site, to be found by its name or country, or a place, whose fields follow. */
 export function LaunchPlace({ path }: { path: Path }) {
@@ -28,32 +28,28 @@ export function LaunchPlace({ path }: { path: Path }) {
         </select>
       </Line>
       {slug !== undefined && (
-        <>
-          <Line label="Search sites" path={[...path, 'search']}>
-            <input
-              id={select([...path, 'search']).id}
-              type="search"
-              autocomplete="off"
-              placeholder="name or country"
-              value={wanted.value}
-              onInput={(event) => {
-                wanted.value = event.currentTarget.value;
-              }}
-            />
-          </Line>
-          <Line label="Site" path={path}>
-            <select {...select(path)} value={slug} onChange={(event) => put(path, event.currentTarget.value)}>
-              <Options of={found(sites.value, wanted.value)} chosen={slug} />
-            </select>
-          </Line>
-        </>
+        <Block label="Site" path={path}>
+          <input
+            aria-label="Search sites"
+            type="search"
+            autocomplete="off"
+            placeholder="Search by name or country"
+            value={wanted.value}
+            onInput={(event) => {
+              wanted.value = event.currentTarget.value;
+            }}
+          />
+          <select {...select(path)} value={slug} onChange={(event) => put(path, event.currentTarget.value)}>
+            <Options of={found(sites.value, wanted.value)} chosen={slug} />
+          </select>
+        </Block>
       )}
       {site && (
         <p class="quiet">
           {site.geodetic_latitude.toFixed(4)}°, {site.longitude.toFixed(4)}°, {site.geodetic_altitude} m
         </p>
       )}
-      {onEarth && <p class="quiet">On the map, click a site or choose “Pick launch place”.</p>}
+      <p class="quiet">{onEarth ? 'On the map, click a site, or use “Pick launch place”.' : 'On the map, use “Pick launch place”.'}</p>
     </>
   );
 }

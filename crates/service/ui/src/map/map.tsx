@@ -1,15 +1,15 @@
 import { computed, effect, useSignal } from '@preact/signals';
-import { type GeoProjection, geoAzimuthalEquidistant, geoEquirectangular, geoOrthographic } from 'd3-geo';
+import { type GeoProjection, geoAzimuthalEquidistant, geoCentroid, geoEquirectangular, geoOrthographic } from 'd3-geo';
 import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
 import { kilometres, number } from '../figures';
-import { at, type Run, withBodies } from '../flight';
+import { at, endOf, type Flight, type Run, withBodies } from '../flight';
 import { isLaunch, launchAt, launchFrom } from '../form/launch';
 import { bodyIn, isEarth, isSameGround, planetOf } from '../planets';
 import { type ListedSite, loadSites, sites, titleOfSite } from '../sites';
 import { current, cursor, draft, runs, tracks } from '../store';
-import { extent, middleOf, placeAt, ramp, written } from './geography';
+import { extent, middleOf, type Place, placeAt, ramp, written } from './geography';
 import { siteAt } from './sites';
 import { drawScene, isPlaced, type Scene } from './view';
 import './map.css';
@@ -18,12 +18,18 @@ const scene = computed<Scene>(() => {
   const instant = Date.parse(draft.value.epoch ?? '');
   const planet = current.value ? planetOf(current.value) : '';
   const here = tracks.value.filter((run) => isSameGround(planetOf(run), planet));
-  return { runs: here, sites: sites.value, planet, time: cursor.value, epoch: Number.isNaN(instant) ? null : new Date(instant) };
+  return {
+    runs: here,
+    sites: isEarth(planet) ? sites.value : [],
+    planet,
+    time: cursor.value,
+    epoch: Number.isNaN(instant) ? null : new Date(instant),
+  };
 });
 
 /** The ground track, on a map of the planet and on a globe. */
 export default function Maps() {
-  const isClose = useSignal(false);
+  const view = useSignal<View>('world');
   const isPicking = useSignal(false);
   useEffect(loadSites, []);
   const run = current.value;
@@ -32,16 +38,19 @@ export default function Maps() {
     <section class="panel" aria-label="Ground track">
       <div class="panel-head">
         <h2>{`Ground track on ${bodyIn(planetOf(run))}`}</h2>
-        <button
-          type="button"
-          aria-pressed={isClose.value}
-          onClick={() => {
-            isClose.value = !isClose.value;
-          }}
-        >
-          Zoom to track
-        </button>
-        {isLaunch() && isEarth(planetOf(run)) && (
+        {(['track', ...(run.flight.bodies.length > 0 ? ['bodies' as const] : [])] as const).map((which) => (
+          <button
+            key={which}
+            type="button"
+            aria-pressed={view.value === which}
+            onClick={() => {
+              view.value = view.value === which ? 'world' : which;
+            }}
+          >
+            Zoom to {which}
+          </button>
+        ))}
+        {isLaunch() && (
           <button
             type="button"
             aria-pressed={isPicking.value}
@@ -55,7 +64,10 @@ export default function Maps() {
         <Legend run={run} />
       </div>
       <div class="maps">
-        <World isClose={isClose.value} isPicking={isPicking.value && isLaunch()} />
+        <World
+          view={view.value === 'bodies' && run.flight.bodies.length === 0 ? 'track' : view.value}
+          isPicking={isPicking.value && isLaunch()}
+        />
         <Globe />
       </div>
       <Ground planet={planetOf(run)} />
@@ -122,18 +134,18 @@ function summaryOf(run: Run): string {
   return `from ${written(from)} to ${written(to)}${range}`;
 }
 
-function World({ isClose, isPicking }: { isClose: boolean; isPicking: boolean }) {
+function World({ view, isPicking }: { view: View; isPicking: boolean }) {
   const pointed = useSignal<Pointed | null>(null);
   const projection = useRef<GeoProjection>(geoEquirectangular());
   const { canvas } = useCanvas(
     (ctx, width, height, shown) => {
       const flight = shown.runs[0]?.flight;
-      const own = shown.runs.filter(({ id }) => id <= 0);
       // Around the middle of the track, where a pole is a place like others.
-      const near = isClose ? geoAzimuthalEquidistant() : geoEquirectangular();
-      if (isClose && flight) {
-        const places = own.flatMap((run) => run.flight.columns.time.map((time) => placeAt(run.flight, time)));
-        const [longitude, latitude] = middleOf(flight);
+      const near = view !== 'world' ? geoAzimuthalEquidistant() : geoEquirectangular();
+      if (view !== 'world' && flight) {
+        const places = placesOf(shown.runs, view);
+        const middle = view === 'bodies' ? geoCentroid({ type: 'MultiPoint', coordinates: places }) : middleOf(flight);
+        const [longitude, latitude] = middle;
         near.rotate([-longitude, -latitude]);
         const margin = 40;
         near.fitExtent(
@@ -141,14 +153,14 @@ function World({ isClose, isPicking }: { isClose: boolean; isPicking: boolean })
             [margin, margin],
             [width - margin, height - margin],
           ],
-          { type: 'MultiPoint', coordinates: [...places, ...around(middleOf(flight))] },
+          { type: 'MultiPoint', coordinates: [...places, ...around(middle)] },
         );
       } else near.fitSize([width, height], { type: 'Sphere' });
       projection.current = near;
       const degrees = width / ((near.scale() * Math.PI) / 180);
       drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : degrees > 10 ? 2 : 0.5);
     },
-    [isClose],
+    [view],
   );
   const run = current.value;
   return (
@@ -191,17 +203,14 @@ interface Pointed {
 }
 
 function pointedAt(projection: GeoProjection, { offsetX, offsetY, currentTarget }: PointerEvent): Pointed | null {
-  const run = current.value;
-  if (!run || !isEarth(planetOf(run))) return null;
-  const site = siteAt(projection, sites.value, [offsetX, offsetY]);
+  const site = siteAt(projection, scene.value.sites, [offsetX, offsetY]);
   return site && { site, x: offsetX, y: offsetY, isRight: offsetX > (currentTarget as HTMLElement).clientWidth / 2 };
 }
 
 /** Puts a launch where the map was clicked: at a site or, where the reader is to pick a place, at any other. */
 function pick(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, isPicking: boolean): void {
-  const run = current.value;
-  if (!run || !isLaunch() || !isEarth(planetOf(run))) return;
-  const site = siteAt(projection, sites.value, [offsetX, offsetY]);
+  if (!isLaunch()) return;
+  const site = siteAt(projection, scene.value.sites, [offsetX, offsetY]);
   const place = projection.invert?.([offsetX, offsetY]);
   if (site) launchFrom(site.slug);
   else if (isPicking && place) launchAt(rounded(place[1]), rounded(place[0]));
@@ -209,6 +218,15 @@ function pick(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, isPic
 
 /** Degrees to some 100 m, which is finer than a pixel. */
 const rounded = (degrees: number) => Number(degrees.toFixed(3));
+
+/** What is in sight: the planet, the tracks, or those of the bodies with the vehicle until the last of them has left it. */
+type View = 'world' | 'track' | 'bodies';
+
+function placesOf(runs: Run[], view: View): Place[] {
+  const own = runs.filter(({ id }) => id <= 0);
+  const last = view === 'bodies' ? Math.max(...own.filter(({ id }) => id < 0).map(({ flight }) => flight.initial.time ?? 0)) : Infinity;
+  return own.flatMap(({ id, flight }) => flight.columns.time.filter((time) => id < 0 || time <= last).map((time) => placeAt(flight, time)));
+}
 
 /** Places half a degree around another, so that the shortest track is not blown up to nothing but itself. */
 function around([longitude, latitude]: [number, number]): [number, number][] {
@@ -340,39 +358,46 @@ function BodyLegend({ run }: { run: Run }) {
   );
 }
 
-/** The marked places, to copy. */
+/** The marked places, and where bodies came down, to copy. */
 function Places({ run }: { run: Run }) {
   const said = useSignal('');
   const { flight } = run;
+  const ends = ({ final }: Flight): Place => [final.longitude ?? 0, final.geodetic_latitude ?? 0];
+  const marks = flight.marks.filter(isPlaced).map(({ kind, label, time }) => ({
+    label,
+    time,
+    altitude: at(flight, 'altitude', time),
+    place: kind === 'end' ? ends(flight) : placeAt(flight, time),
+  }));
+  const bodies = flight.bodies.map(({ name, flight: body }) => ({
+    label: `${name}: ${endOf(body.answer)}`,
+    time: body.final.time ?? 0,
+    altitude: body.final.altitude ?? 0,
+    place: ends(body),
+  }));
   return (
     <div class="places">
       <ul>
-        {flight.marks.filter(isPlaced).map((mark) => {
-          const place = written(
-            mark.kind === 'end' ? [flight.final.longitude ?? 0, flight.final.geodetic_latitude ?? 0] : placeAt(flight, mark.time),
-          );
-          const altitude = at(flight, 'altitude', mark.time);
-          return (
-            <li key={`${mark.kind}${mark.label}${mark.time}`}>
-              <strong>{mark.label}</strong> <code>{place}</code>{' '}
-              <span class="quiet">
-                {kilometres(altitude, 4)} km, {number(mark.time, 5)} s
-              </span>{' '}
-              <button
-                type="button"
-                class="small"
-                aria-label={`Copy position of ${mark.label}`}
-                onClick={() => {
-                  void copied(place).then(() => {
-                    said.value = `Copied: ${place}`;
-                  });
-                }}
-              >
-                Copy
-              </button>
-            </li>
-          );
-        })}
+        {[...marks, ...bodies].map(({ label, time, altitude, place }, index) => (
+          <li key={`${index}${label}`}>
+            <strong>{label}</strong> <code>{written(place)}</code>{' '}
+            <span class="quiet">
+              {kilometres(altitude, 4)} km, {number(time, 5)} s
+            </span>{' '}
+            <button
+              type="button"
+              class="small"
+              aria-label={`Copy position of ${label}`}
+              onClick={() => {
+                void copied(written(place)).then(() => {
+                  said.value = `Copied: ${written(place)}`;
+                });
+              }}
+            >
+              Copy
+            </button>
+          </li>
+        ))}
       </ul>
       <output class="quiet" aria-live="polite">
         {said.value}

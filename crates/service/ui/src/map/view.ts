@@ -11,7 +11,7 @@ import { drawSites } from './sites';
 export interface Scene {
   /** The flights on the planet, the current one first, then the bodies that left it. */
   runs: Run[];
-  /** What may be named as the place of a launch or a landing. */
+  /** What may be named as the place of a launch; on the Earth alone. */
   sites: ListedSite[];
   /** The model of the planet. */
   planet: string;
@@ -46,7 +46,7 @@ export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjecti
   stroke(graticule(step), colour(onEarth ? 'line' : 'line-strong'), onEarth ? 0.6 : 0.4);
   if (onEarth) drawNight(fill, scene);
   stroke({ type: 'Sphere' }, colour('line-strong'), 1);
-  if (onEarth) drawSites(ctx, projection, scene.sites);
+  drawSites(ctx, projection, scene.sites);
   // Beside bodies, whose colours tell them apart, the vehicle has a colour of its own too.
   const isAlone = !scene.runs.some(({ id }) => id < 0);
   for (const run of [...scene.runs].reverse()) {
@@ -91,7 +91,8 @@ const MOST_LABELS = 2;
 function drawMarks(ctx: CanvasRenderingContext2D, projection: GeoProjection, { runs, time }: Scene): void {
   const taken: [number, number][] = [];
   const nearTo = (point: [number, number]) => taken.filter(([x, y]) => Math.abs(x - point[0]) < 110 && Math.abs(y - point[1]) < 18).length;
-  for (const run of runs) {
+  // The ends of bodies have their labels before the marks of the vehicle.
+  for (const run of [...runs].sort((a, b) => Number(a.id >= 0) - Number(b.id >= 0))) {
     if (run.id === 0) {
       const places = run.flight.marks.filter(isPlaced).map((mark) => ({ mark, point: seen(projection, placeAt(run.flight, mark.time)) }));
       // Of labels in each other's way the end has its own, a second goes below its mark, a third is left to the list.

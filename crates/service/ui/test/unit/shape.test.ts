@@ -118,6 +118,40 @@ it('a case of which the service says what is wrong is one', () => {
   }
 });
 
+/** A case with all that a launch may have. */
+const LAUNCH = JSON.parse(readFileSync(new URL('launcher.json', FOLDER), 'utf8')) as Case;
+
+it('of a case with parts every field stays where another changes', () => {
+  const full = {
+    ...LAUNCH,
+    control: { steering: { type: 'linear_tangent', a: 1, b: 0.01 } },
+    events: [
+      ...(LAUNCH.events ?? []),
+      {
+        when: { burnout: 'first', delay: 1 },
+        then: {
+          throttle: { second: 0.5 },
+          load_limit: null,
+          separate: [
+            {
+              name: 'x',
+              parts: ['first'],
+              push: { along: 'radial', value: 1 },
+              events: [{ when: { quantity: 'time', rises_through: 9 } }],
+            },
+          ],
+        },
+      },
+    ],
+  } as unknown as Case;
+  expect(whyNoCase(full)).toBeNull();
+  show(full);
+  expect(draft.value).toEqual(full);
+  expect(
+    set(set(full, ['vehicle', 'parts', 0, 'dry_mass'], 1), ['vehicle', 'parts', 0, 'dry_mass'], LAUNCH.vehicle.parts?.[0]?.dry_mass),
+  ).toEqual(full);
+});
+
 describe('the cases of the repository', () => {
   it.each([...OWN, FULL, ...examples.map((example) => example.case)].map((tree) => [tree.name, tree] as const))('%s is one', (_, tree) => {
     expect(whyNoCase(tree)).toBeNull();
