@@ -153,11 +153,13 @@ async fn parts_have_columns_of_their_own() {
     assert_eq!(names(&answer["trajectory"]), columns);
     let [vehicle, stage, ring] =
         [&answer["trajectory"], &answer["bodies"][0]["trajectory"], &answer["bodies"][1]["trajectory"]];
-    assert_eq!(vehicle["propellant.first"], json!([12_000.0, null, null, null, null]));
+    let first = vehicle["propellant.first"].as_array().unwrap();
+    assert_eq!((&first[0], &first[2..]), (&json!(12_000.0), &[Value::Null, Value::Null, Value::Null][..]));
+    assert!((1.0..12_000.0).contains(&number(&first[1])), "it burns: {first:?}");
     assert_eq!(number(&vehicle["propellant.second"][4]).to_bits(), 0.0_f64.to_bits());
     // A body has the columns of its own parts, until these leave it.
     assert_eq!(names(stage), ["time", "mass", "propellant.first", "propellant.ring", "apoapsis_altitude"]);
-    assert_eq!(stage["propellant.ring"], json!([0.0, null, null, null, null]));
+    assert_eq!(stage["propellant.ring"], json!([0.0, 0.0, null, null, null]));
     assert_eq!(names(ring), ["time", "mass", "propellant.ring", "apoapsis_altitude"]);
     let csv = text(&with(&launch(), "/output", json!({"count": 5, "columns": columns})), "csv").await;
     let last = csv.lines().last().unwrap().strip_prefix("\"ring, \"\"loose\"\"\",").unwrap();
