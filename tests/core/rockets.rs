@@ -147,6 +147,9 @@ pub(crate) struct Inertial {
     pub(crate) mass: f64,
 }
 
+/// The velocity; the acceleration, and the mass flow.
+type Rates = (Vector3<f64>, (Vector3<f64>, f64));
+
 /// What a vehicle is subject to between two discontinuities.
 pub(crate) struct Rocket<'a> {
     pub(crate) planet: Planet,
@@ -265,7 +268,7 @@ impl Rocket<'_> {
 
     /// The state a time later, by one step.
     fn step(&self, now: &Inertial, length: f64) -> Inertial {
-        let ahead = |(velocity, (acceleration, flow)): &(Vector3<f64>, (Vector3<f64>, f64)), part: f64| Inertial {
+        let ahead = |(velocity, (acceleration, flow)): &Rates, part: f64| Inertial {
             time: now.time + part * length,
             position: now.position + velocity * (part * length),
             velocity: now.velocity + acceleration * (part * length),
@@ -279,7 +282,7 @@ impl Rocket<'_> {
         let third = rates(&ahead(&second, 0.5));
         let fourth = rates(&inside(ahead(&third, 1.0), 1.0 - 1e-9));
         let all = [(&first, 1.0), (&second, 2.0), (&third, 2.0), (&fourth, 1.0)];
-        let sum = |of: &dyn Fn(&(Vector3<f64>, (Vector3<f64>, f64))) -> Vector3<f64>| {
+        let sum = |of: &dyn Fn(&Rates) -> Vector3<f64>| {
             all.iter().fold(Vector3::zeros(), |sum, (rates, weight)| sum + of(rates) * (weight / 6.0))
         };
         let flow: f64 = all.iter().map(|(rates, weight)| rates.1.1 * weight / 6.0).sum();

@@ -54,7 +54,7 @@ const DRAG_TIMES_A_STEP: f64 = 1.5;
 /// The forces on the vehicle: gravity, lift, drag, thrust and parachutes. The parameters may carry derivatives (dual numbers), or be those
 /// of several vehicles in the lanes of one computation.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is asked for by its name")]
+#[expect(clippy::struct_excessive_bools, reason = "each is asked for by itself")]
 pub struct Forces<P = f64> {
     /// The models, in which the numbers of `parameters` are replaced by 0 or 1: both must come from the same case.
     models: Models,
@@ -598,8 +598,10 @@ impl<P: Scalar> Forces<P> {
         match &flow.axis {
             None => self.commanded_angle_of_attack(time, flow),
             Some(axis) => {
-                let ahead = &flow.directions.ahead;
-                length(&axis.cross(ahead)).atan2(axis.dot(ahead))
+                let Directions { ahead, speed, .. } = &flow.directions;
+                // None at rest.
+                let at_rest = speed.less_than(f64::MIN_POSITIVE);
+                length(&axis.cross(ahead)).atan2(S::select(at_rest, S::one(), axis.dot(ahead)))
             }
         }
     }

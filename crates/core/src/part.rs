@@ -21,17 +21,23 @@ pub struct Part {
     pub engine: Option<Engine>,
 }
 
-/// A rocket engine: T = k T_v - A_e p, ṁ = -k T_v / (g₀ I_sp), with its throttle k.
+/// A rocket engine.
+///
+/// ```text
+/// T = k T_v - A_e p,   ṁ = -k T_v / (g₀ I_sp)
+/// ```
+///
+/// with its throttle k.
 ///
 /// # Reference
 /// G. P. Sutton and O. Biblarz, Rocket Propulsion Elements, 9th ed., 2017, equations 2-5 and 2-13.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Engine {
-    /// T_v, in vacuum, N.
+    /// `T_v`, in vacuum, N.
     pub thrust: ThrustProfile,
-    /// I_sp, in vacuum, s.
+    /// `I_sp`, in vacuum, s.
     pub specific_impulse: f64,
-    /// A_e, on which the pressure of the air acts, m².
+    /// `A_e`, on which the pressure of the air acts, m².
     pub exit_area: f64,
 }
 

@@ -261,8 +261,8 @@ impl From<SimulationError> for ApiError {
 
 /// The field at fault where a flight cannot be finished: of a body that of its separation, or one below it.
 fn fields_of_flight(BodyError { body, error }: &BodyError) -> Vec<FieldError> {
-    let separation: String =
-        body.iter().map(|(event, separation)| format!("/events/{event}/then/separate/{separation}")).collect();
+    let separation = body.iter().map(|(event, separation)| format!("/events/{event}/then/separate/{separation}"));
+    let separation = separation.collect::<Vec<_>>().concat();
     let (pointer, advice) = match error {
         SimulationError::Singularity { .. } => {
             ("/solver/formulation".to_owned(), "use \"cartesian\", which has no such singularity")

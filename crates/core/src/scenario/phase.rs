@@ -132,13 +132,12 @@ impl<P: Scalar<Value = f64, Mask = bool>> PartState<P> {
         let count = f64::from(numbers.case().parts[part].count);
         engine.thrust.entry(number)?;
         let [thrust, time] = [entry(number, |entry| entry.thrust) * count, entry(number, |entry| entry.time)];
-        let (rate, until) = match engine.thrust.entry(number + 1) {
-            None => (P::zero(), None),
-            Some(_) => {
-                let [then, end] =
-                    [entry(number + 1, |entry| entry.thrust) * count, entry(number + 1, |entry| entry.time)];
-                ((then - thrust) * (end - time).recip(), Some(ignition + end))
-            }
+        let next = number + 1;
+        let (rate, until) = if engine.thrust.entry(next).is_some() {
+            let [then, end] = [entry(next, |entry| entry.thrust) * count, entry(next, |entry| entry.time)];
+            ((then - thrust) * (end - time).recip(), Some(ignition + end))
+        } else {
+            (P::zero(), None)
         };
         let mass_flow_of_unit = of_engine(|engine| Engine::mass_flow_of_unit(engine.specific_impulse));
         let exit_area = of_engine(|engine| engine.exit_area) * count;

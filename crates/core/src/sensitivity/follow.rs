@@ -214,17 +214,42 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
             return;
         }
         let records = &records[..now];
+        let mut end_of_step = index.checked_sub(1).map(Place::StepEnd);
+        let last = records.first().map_or(step.phase.saturating_sub(1), |record| record.before.phase);
+        while self.phase_index < last {
+            self.change_alone(time, end_of_step.take());
+        }
         let rates = self.motion.derivative(time.into(), &self.state);
         let delay = self.turning_delay(records, step.mode, time, &rates);
         // During the delay the rates before the change hold in place of those after it.
         self.move_by(&rates, delay);
         let instant = delay + time;
-        if index > 0 {
-            self.keep(Place::StepEnd(index - 1), instant);
+        if let Some(place) = end_of_step {
+            self.keep(place, instant);
         }
         self.let_happen(records, delay);
         self.enter(step.phase, delay, step.mode);
         self.keep(Place::StepStart(index), instant);
+        let next = self.motion.derivative(time.into(), &self.state);
+        self.move_by(&next, -delay);
+    }
+
+    /// Enters the next phase, to which time alone leads, as much later as that comes by itself: what comes at the same time may do so sooner
+    /// or later. Keeps the present state for a place before that, if there is one.
+    fn change_alone(&mut self, time: f64, before: Option<Place>) {
+        let number = self.phase_index + 1;
+        let rates = self.motion.derivative(time.into(), &self.state);
+        let delay = self.turning_delay(&[], self.forces.mode(), time, &rates);
+        self.move_by(&rates, delay);
+        if let Some(place) = before {
+            self.keep(place, delay + time);
+        }
+        let Follow { flight, varied, .. } = self.of;
+        let mut plain = flight.flown.phases[number].forces(varied.case);
+        plain.enter(self.forces.mode());
+        // The flight would have ended where none holds.
+        let _ = plain.enter_mode_of(time, &F::state(&self.state.map(|number| number.re)));
+        self.enter(number, delay, plain.mode());
         let next = self.motion.derivative(time.into(), &self.state);
         self.move_by(&next, -delay);
     }

@@ -127,14 +127,23 @@ impl Variation {
     }
 }
 
+/// What an event puts in their place.
+#[derive(PartialEq)]
+struct ModelsOfEvent {
+    /// Those with its aerodynamics, if it has any.
+    aerodynamics: Option<Models>,
+    /// Of its thrust and its impulse.
+    axes: [Option<ThrustAxis>; 2],
+    steering: Option<Steering>,
+}
+
 /// What a flight takes from its case that is not a number: the models, and what events put in their place.
 #[derive(PartialEq)]
 struct ModelsOfFlight {
     of_start: Models,
     /// Where the axis of the vehicle points.
     steering: Steering,
-    /// Of each event its aerodynamics as far as they are tables, the axes of its thrust and impulse, and its steering.
-    of_events: Vec<(Option<Models>, [Option<ThrustAxis>; 2], Option<Steering>)>,
+    of_events: Vec<ModelsOfEvent>,
 }
 
 impl ModelsOfFlight {
@@ -145,7 +154,8 @@ impl ModelsOfFlight {
             };
             let axes =
                 [event.then.thrust().map(|thrust| thrust.along), event.then.impulse.map(|impulse| impulse.along)];
-            (event.then.aerodynamics.as_ref().map(with), axes, event.then.steer.clone())
+            let aerodynamics = event.then.aerodynamics.as_ref().map(with);
+            ModelsOfEvent { aerodynamics, axes, steering: event.then.steer.clone() }
         });
         Self { of_start: case.models(), steering: case.steering.clone(), of_events: of_events.collect() }
     }

@@ -81,7 +81,7 @@ impl CommandRequest {
     }
 
     /// What is wrong with the name of the event since which it runs; `pointer` is that of the command.
-    pub(super) fn name_fault(&self, pointer: String, events: &[Event]) -> Option<Fault> {
+    pub(super) fn name_fault(&self, pointer: &str, events: &[Event]) -> Option<Fault> {
         Event::name_fault(self.since.as_ref()?, format!("{pointer}/against/since"), events)
     }
 
@@ -108,7 +108,7 @@ impl ControlRequest {
         let Self { bank_angle, angle_of_attack, steering } = self;
         let of_steering = steering.iter().flat_map(|it| it.name_faults("/control/steering", events));
         let named = [("bank_angle", bank_angle), ("angle_of_attack", angle_of_attack)];
-        let faults = named.map(|(field, command)| command.name_fault(format!("/control/{field}"), events));
+        let faults = named.map(|(field, command)| command.name_fault(&format!("/control/{field}"), events));
         faults.into_iter().flatten().chain(of_steering).collect()
     }
 }

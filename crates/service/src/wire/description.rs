@@ -227,7 +227,9 @@ impl<'a, 'b> Object<'a, 'b> {
                 let Some(chosen) = reader.exactly_one(&names) else {
                     // Which of the other fields belong here is not known.
                     for (_, describe) in alternatives {
-                        fields_of(*describe).into_iter().for_each(|name| _ = reader.has(name));
+                        for name in fields_of(*describe) {
+                            reader.has(name);
+                        }
                     }
                     return None;
                 };

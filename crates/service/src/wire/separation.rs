@@ -101,6 +101,7 @@ pub(super) fn separation(object: &mut Object) -> Option<Separation> {
     Some(Separation { name, parts, push, reference_area, aerodynamics, events, control, stop })
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the descriptions of objects have one type")]
 fn stop(object: &mut Object) -> Option<BodyStop> {
     object.named("BodyStop", "Conditions that end the flight of a body; the first one met ends it.");
     let altitude = object

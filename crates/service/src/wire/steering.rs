@@ -174,6 +174,6 @@ impl Steering {
     pub(super) fn name_faults(&self, pointer: &str, events: &[Event]) -> Vec<Fault> {
         let Self::Program(_, commands) = self else { return Vec::new() };
         let faults = self.angles().into_iter().zip(commands.iter());
-        faults.filter_map(|(field, command)| command.name_fault(format!("{pointer}/{field}"), events)).collect()
+        faults.filter_map(|(field, command)| command.name_fault(&format!("{pointer}/{field}"), events)).collect()
     }
 }
