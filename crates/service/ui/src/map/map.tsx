@@ -77,7 +77,7 @@ export default function Maps() {
 }
 
 /** The sources of the sites, as their licence asks. */
-const SOURCES = 'Sites: General Catalog of Artificial Space Objects (J. McDowell, planet4589.org, CC BY 4.0) and OurAirports.';
+const SOURCES = 'Sites: General Catalog of Artificial Space Objects (J. McDowell, planet4589.org, CC BY 4.0), OurAirports and others.';
 
 /** What is on the map and from where; what is not: the surface of another planet, and flights elsewhere. */
 function Ground({ planet }: { planet: string }) {
