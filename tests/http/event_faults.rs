@@ -337,7 +337,7 @@ async fn all_faults_of_events_and_heating_come_in_one_answer() {
         ("/events/3/then/aerodynamics/type", "got \"brick\""),
         ("/events/4", "must be an object, got a string"),
         ("/stop/ceiling", "must be between -1e12 and 1e12, got "),
-        ("/stop/when/0", "must have exactly one of quantity, event, got none of them"),
+        ("/stop/when/0", "must have exactly one of quantity, event, burnout, got none of them"),
         ("/stop/when/1", "must have exactly one of falls_through, rises_through, got none of them"),
     ];
     steady.refused_at("/simulate", &request, &expected).await;
@@ -450,7 +450,7 @@ async fn what_waits_for_an_event_waits_for_one_that_may_happen() {
     let both = json!({"quantity": "time", "rises_through": 1, "event": "drogue"});
     refused(
         json!([named("drogue"), {"when": both}]),
-        &[("/events/1/when", "must have exactly one of quantity, event, got quantity and event")],
+        &[("/events/1/when", "must have exactly one of quantity, event, burnout, got quantity and event")],
     )
     .await;
     let stop = with_all(&capsule(), [("/stop", json!({"when": [{"event": "main"}]}))]);

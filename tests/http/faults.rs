@@ -147,7 +147,9 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 }
                 "/atmosphere/preset" => "must be one of earth_seven_layer, got ",
                 "/wind/type" => "must be one of constant, table, got ",
-                "/vehicle/aerodynamics/type" | "/events/0/then/aerodynamics/type" => {
+                "/vehicle/aerodynamics/type"
+                | "/events/0/then/aerodynamics/type"
+                | "/vehicle/parts/1/aerodynamics/type" => {
                     "must be one of constant, ballistic, mach_table, alpha_mach_table, got "
                 }
                 "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
@@ -157,18 +159,29 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/sensitivities/of/0/at" => "must be one of end, start, peak, lowest, got ",
                 "/sensitivities/of/0/at/side" => "must be one of before, after, got ",
                 "/dispersions/0/offset/type" => "must be one of normal, multivariate_normal, got ",
-                "/events/0/when/quantity" | "/stop/when/0/quantity" => {
+                "/events/0/when/quantity"
+                | "/stop/when/0/quantity"
+                | "/events/1/then/separate/0/stop/when/0/quantity" => {
                     "must be one of time, altitude, speed, mach, dynamic_pressure, load_factor, flight_path_angle, mass, "
                 }
-                "/events/0/then/delta_v/along" | "/events/0/then/thrust/along" => {
-                    "must be one of velocity, radial, normal, horizontal, got "
-                }
+                "/events/0/then/delta_v/along"
+                | "/events/0/then/thrust/along"
+                | "/events/1/then/separate/0/push/along" => "must be one of velocity, radial, normal, horizontal, got ",
                 "/events/0/then/delta_v/along/frame" | "/events/0/then/thrust/along/frame" => {
                     "must be one of inertial, got "
                 }
                 "/control/bank_angle/type" => "must be one of schedule, got ",
                 "/control/bank_angle/against" => "must be one of time, altitude, speed, mach, energy, got ",
                 "/control/bank_angle/interpolation" => "must be one of linear, step, got ",
+                "/vehicle/parts/1/engine/thrust/type" => "must be one of table, got ",
+                "/control/steering/type" | "/events/1/then/steer/type" => {
+                    "must be one of vertical, velocity, program, linear_tangent, got "
+                }
+                "/control/steering/frame" => "must be one of launch, local, inertial, got ",
+                "/initial_state/type" => {
+                    "must be one of planet_relative, geodetic, ecef, eci, orbital_elements, inertial_flight_path, launch, got "
+                }
+                "/output/bodies" => "must be one of full, ends, none, got ",
                 "/solver/formulation" => "must be one of cartesian, spherical, got ",
                 "/state/frame" | "/initial_state/frame" => "must be one of date, teme, gcrf, got ",
                 _ => {

@@ -162,7 +162,7 @@ const CASE: [Row; 29] = [
     ("/wind/east", Required, Number(WIND)),
     ("/wind/north", Required, Number(WIND)),
     ("/vehicle", Required, Object),
-    ("/vehicle/mass", Required, Number(POSITIVE)),
+    ("/vehicle/mass", Alternative, Number(POSITIVE)),
     ("/vehicle/reference_area", Required, Number(NOT_NEGATIVE)),
     ("/vehicle/aerodynamics", Required, Object),
     ("/vehicle/aerodynamics/type", Required, Name),

@@ -38,7 +38,9 @@ fn every_number_is_listed_once_but_whole_ones() {
         let (numbers, tree) = numbers_of(request);
         let listed: BTreeSet<_> = numbers.iter().map(|number| number.pointer.clone()).collect();
         assert_eq!(listed.len(), numbers.len(), "{numbers:?}");
-        let there = pointers(&tree, "").into_iter().filter(|pointer| !whole.contains(&pointer.as_str()));
+        let there = pointers(&tree, "")
+            .into_iter()
+            .filter(|pointer| !whole.contains(&pointer.as_str()) && !pointer.ends_with("/count"));
         assert_eq!(listed, there.collect(), "{tree}");
         for NumberField { pointer, bound, unit } in &numbers {
             let value = tree.pointer(pointer).and_then(Value::as_f64).unwrap();

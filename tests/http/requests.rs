@@ -256,7 +256,7 @@ pub(crate) fn models() -> Vec<(&'static str, Value)> {
                 json!({"type": "program", "frame": "inertial", "right_ascension": 0.9, "declination": 0.1}),
             )]),
         ),
-        ("engines", staged(&[("/events/1/then", engines_change())])),
+        ("engines", staged(&[("/events/0/then", json!({"ignite": ["second"]})), ("/events/1/then", engines_change())])),
         ("burnout", staged(&[("/events/1/when", json!({"burnout": "booster", "delay": 0.1}))])),
         ("separation", staged(&[("/events/1/then", json!({"separate": [leaves()]}))])),
         ("parachute", with(&flight(), "/events", json!([deploys()]))),
@@ -334,7 +334,7 @@ pub(crate) fn staged(changes: &[(&str, Value)]) -> Value {
 /// Everything that an event may do to engines.
 fn engines_change() -> Value {
     json!({
-        "ignite": ["core"], "shut_down": ["booster"], "throttle": {"core": 0.6}, "load_limit": 4,
+        "ignite": ["core"], "shut_down": ["second"], "throttle": {"core": 0.6}, "load_limit": 4,
         "steer": {"type": "velocity"}, "tilt": {"angle": 0.1, "azimuth": 1.2},
     })
 }

@@ -12,14 +12,16 @@ pub mod shown;
 pub mod sites;
 pub mod space_weather;
 
+pub mod aerodynamics;
 pub mod atmosphere;
+pub mod commands;
 pub mod control;
 pub mod epoch;
 pub mod events;
 pub mod heating;
+pub mod names;
 pub mod parts;
 pub mod planet;
-pub mod separation;
 pub mod state;
 pub mod steering;
 pub mod vehicle;

@@ -6,9 +6,8 @@ use reentry::simulate::{Flights, SeparatedBody};
 use reentry::trajectory::{FlightPoint, Trajectory};
 
 use super::columns::AvailableQuantities;
-use super::events::Event;
+use super::events::{Event, Separation};
 use super::scenario::SimulateRequest;
-use super::separation::Separation;
 use super::shown::quoted;
 
 /// All that flew in a case.

@@ -1,5 +1,11 @@
 //! The events of a request, and the conditions that let them happen or end the flight.
 
+mod separation;
+
+pub use separation::Separation;
+
+use separation::separation;
+
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -14,15 +20,15 @@ use reentry::scenario::{Bound, MOST_BODIES};
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
 
+use super::aerodynamics::aerodynamics;
 use super::control::ControlRequest;
 use super::description::{Field, Object, WordOrObject, Words, word};
+use super::names::EventNames;
 use super::parts::{MOST_PARTS, NamedPart};
 use super::reader::{Fault, MOST_FAULTS};
 use super::schema::{ANGLE, bounds, is, widened};
-use super::separation::{Separation, separation};
-use super::shown::{quoted, shown};
+use super::shown::quoted;
 use super::steering::{Axes, Steering, steering};
-use super::vehicle::aerodynamics;
 
 /// The name of the event of a launch.
 pub const LIFT_OFF: &str = "liftoff";
@@ -171,6 +177,18 @@ pub(super) fn condition(object: &mut Object) -> Option<Condition> {
          first return.",
     );
     object.alternatives(&[("quantity", &crossing), ("event", &after), ("burnout", &after_burnout)])
+}
+
+/// Further conditions that end a flight.
+pub(super) fn conditions(object: &mut Object) -> Option<Vec<Condition>> {
+    object
+        .field("when", "Conditions")
+        .doc(
+            "Further conditions; each of them ends the flight. If several are met at the same instant, the response \
+             names the first in the list.",
+        )
+        .optional()
+        .objects([0, MOST_EVENTS], condition)
 }
 
 fn crossing(object: &mut Object) -> Option<Condition> {
@@ -507,7 +525,7 @@ impl Event {
     }
 
     /// The core's event; the separations have the places of their bodies from `first_body` on.
-    pub(super) fn to_core(&self, events: &[Self], references: &EventReferences, first_body: usize) -> CoreEvent {
+    pub(super) fn to_core(&self, events: &EventNames, references: &EventReferences, first_body: usize) -> CoreEvent {
         let parachute = |name: &String| references.parachutes.get(name.as_str()).copied();
         let place = |name: &String| NamedPart::place_of(name, references.parts).unwrap_or(references.parts.len());
         let places = |names: &[String]| names.iter().map(place).collect();
@@ -623,23 +641,9 @@ impl Event {
         unknown.then(|| Fault::new("/initial_state/sidereal_time", detail)).into_iter().collect()
     }
 
-    /// The place of the first event of a name in the list.
-    pub(super) fn place_of(name: &str, events: &[Self]) -> Option<usize> {
-        events.iter().position(|event| event.name.as_deref() == Some(name))
-    }
-
-    /// What is wrong with the name of an event, which must be that of one event alone; `pointer` is that of the name.
-    pub(super) fn name_fault(name: &str, pointer: String, events: &[Self]) -> Option<Fault> {
-        let named = events.iter().filter(|event| event.name.as_deref() == Some(name)).count();
-        let detail = match named {
-            0 => format!("must be the name of an event of the case, got {}", shown(&json!(name))),
-            1 => return None,
-            _ => format!(
-                "must be the name of exactly one event, got {}, the name of {named} events",
-                shown(&json!(name))
-            ),
-        };
-        Some(Fault::new(pointer, detail))
+    /// The names of events.
+    pub(super) fn names(events: &[Self]) -> EventNames<'_> {
+        EventNames::new(events.iter().map(|event| event.name.as_deref()))
     }
 
     /// Parachutes that share a name, and names of those that are cut off and never deployed.
@@ -700,12 +704,10 @@ impl Event {
 
 impl Condition {
     /// The core's trigger; one that waits for an event of no name in the list waits for one beyond its end.
-    pub(super) fn to_core(&self, events: &[Event], parts: &[NamedPart]) -> Trigger {
+    pub(super) fn to_core(&self, events: &EventNames, parts: &[NamedPart]) -> Trigger {
         match self {
             Self::Crossing(crossing) => (*crossing).into(),
-            Self::After(name, delay) => {
-                Trigger::After { event: Event::place_of(name, events).unwrap_or(events.len()), delay: *delay }
-            }
+            Self::After(name, delay) => Trigger::After { event: events.place_of(name), delay: *delay },
             Self::AfterBurnout(name, delay) => {
                 Trigger::AfterBurnout { part: NamedPart::place_of(name, parts).unwrap_or(parts.len()), delay: *delay }
             }
@@ -714,10 +716,10 @@ impl Condition {
 
     /// What is wrong with the name of an event or a part that is waited for: it must be that of one event, or of a part with an engine;
     /// `place` is that of the condition.
-    pub(super) fn name_fault(&self, place: &str, events: &[Event], parts: &[NamedPart]) -> Option<Fault> {
+    pub(super) fn name_fault(&self, place: &str, events: &EventNames, parts: &[NamedPart]) -> Option<Fault> {
         match self {
             Self::Crossing(_) => None,
-            Self::After(name, _) => Event::name_fault(name, format!("{place}/event"), events),
+            Self::After(name, _) => events.fault(name, format!("{place}/event")),
             Self::AfterBurnout(name, _) => NamedPart::name_fault(name, parts, true, format!("{place}/burnout")),
         }
     }

@@ -7,11 +7,11 @@ use reentry::scenario::Bound;
 use reentry::vehicle::Aerodynamics;
 use serde_json::json;
 
+use super::aerodynamics::aerodynamics;
 use super::description::Object;
 use super::reader::{Fault, MOST_ENTRIES, NumberOrList};
 use super::schema::is;
 use super::shown::quoted;
-use super::vehicle::aerodynamics;
 
 /// The greatest number of parts of a vehicle.
 pub const MOST_PARTS: usize = 100;

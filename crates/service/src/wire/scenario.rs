@@ -16,7 +16,7 @@ use super::control::{ControlRequest, control};
 use super::description::{self, NameOr, Object, Words, word};
 use super::dispersions::{Dispersion, dispersion};
 use super::epoch::{self, Epoch};
-use super::events::{Condition, Event, EventReferences, MOST_EVENTS, condition, event};
+use super::events::{Condition, Event, EventReferences, MOST_EVENTS, Separation, conditions, event};
 use super::heating::{Heating, heating};
 use super::numbers::{MOST_VARIED, Numbers};
 use super::parts::NamedPart;
@@ -24,7 +24,6 @@ use super::planet::{Planet, PlanetModel, planet};
 use super::reader::Fault;
 use super::schema::is;
 use super::sensitivities::{RequestedSensitivities, asked};
-use super::separation::Separation;
 use super::shown::shown;
 use super::state::{State, inertial_conditions, initial_state};
 use super::steering::{Axes, Steering};
@@ -402,18 +401,6 @@ fn stop(object: &mut Object) -> Option<(Stop, Vec<Condition>)> {
     Some((Stop { altitude: altitude?, time: time?, ceiling, when: Vec::new() }, when.unwrap_or_default()))
 }
 
-/// Further conditions that end a flight.
-pub(super) fn conditions(object: &mut Object) -> Option<Vec<Condition>> {
-    object
-        .field("when", "Conditions")
-        .doc(
-            "Further conditions; each of them ends the flight. If several are met at the same instant, the response \
-             names the first in the list.",
-        )
-        .optional()
-        .objects([0, MOST_EVENTS], condition)
-}
-
 /// The fields of which one says which rows there are.
 const WAYS: [&str; 5] = ["samples_per_step", "interval", "count", "times", "trajectory"];
 
@@ -673,15 +660,16 @@ impl SimulateRequest {
     fn case_of(&self, flown: &Flown, frames: &Frames) -> Case {
         let Flown { parts, events, control, .. } = flown;
         let references = EventReferences::new(events, parts, frames.axes, frames.azimuth);
+        let names = Event::names(events);
         let (mut core_events, mut bodies) = (Vec::with_capacity(events.len()), Vec::new());
         for event in *events {
-            core_events.push(event.to_core(events, &references, bodies.len()));
+            core_events.push(event.to_core(&names, &references, bodies.len()));
             for separation in &event.then.separated {
                 let body = flown.body(separation, String::new());
                 bodies.push(BodyCase { case: self.case_of(&body, frames), stop_time: body.stop_time });
             }
         }
-        let when = flown.stop_when.iter().map(|when| when.to_core(events, parts)).collect();
+        let when = flown.stop_when.iter().map(|when| when.to_core(&names, parts)).collect();
         let vehicle = flown.vehicle.clone().unwrap_or_else(|| self.vehicle.clone());
         let heating = self.heating.as_ref().map(|heating| heating.core);
         Case {
@@ -690,8 +678,8 @@ impl SimulateRequest {
             density_factor: self.density_factor,
             wind: self.wind.core.clone(),
             parts: parts.iter().map(|part| part.core.clone()).collect(),
-            control: control.to_core(events),
-            steering: control.steering.as_ref().map_or_else(Default::default, |it| it.to_core(events, &frames.axes)),
+            control: control.to_core(&names),
+            steering: control.steering.as_ref().map_or_else(Default::default, |it| it.to_core(&names, &frames.axes)),
             // What leaves has no heat flux without a nose.
             heating: heating.filter(|_| flown.is_whole() || vehicle.nose_radius.is_some()),
             vehicle,
@@ -851,15 +839,15 @@ impl<'a> Flown<'a> {
 
     /// Events that are waited for by a name that none of them has, or several, and parts without a name.
     fn name_faults(&self) -> Vec<Fault> {
+        let names = Event::names(self.events);
         let events = self.events.iter().enumerate();
         let events = events.map(|(index, event)| (format!("/events/{index}/when"), &event.when));
         let stops = self.stop_when.iter().enumerate().map(|(index, when)| (format!("/stop/when/{index}"), when));
-        let conditions =
-            events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, self.events, &self.parts));
+        let conditions = events.chain(stops).filter_map(|(place, when)| when.name_fault(&place, &names, &self.parts));
         let steers = self.events.iter().enumerate().filter_map(|(index, event)| {
-            Some(event.then.steering.as_ref()?.name_faults(&format!("/events/{index}/then/steer"), self.events))
+            Some(event.then.steering.as_ref()?.name_faults(&format!("/events/{index}/then/steer"), &names))
         });
-        conditions.chain(self.control.name_faults(self.events)).chain(steers.flatten()).collect()
+        conditions.chain(self.control.name_faults(&names)).chain(steers.flatten()).collect()
     }
 }
 

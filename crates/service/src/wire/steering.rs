@@ -5,9 +5,9 @@ use reentry::coordinates::Rotation;
 use reentry::scenario::Bound;
 use reentry::steering::{Program, ProgramAxes, Steering as CoreSteering};
 
-use super::control::{CommandRequest, command, required_command};
+use super::commands::{CommandRequest, command, required_command};
 use super::description::{Object, Words, variant, word};
-use super::events::Event;
+use super::names::EventNames;
 use super::reader::Fault;
 
 /// The steering of a request.
@@ -95,6 +95,12 @@ fn velocity(object: &mut Object) -> Option<Steering> {
 fn program(object: &mut Object) -> Option<Steering> {
     object.named("ProgramSteering", "Axis by two angles in a frame; each is a constant or a schedule.");
     let frame = object.field("frame", "Frame").doc("Frame of the angles.").word(&FRAMES);
+    if frame.is_none() {
+        // Which of the angles belong here is not known.
+        for name in ["pitch", "yaw", "azimuth", "right_ascension", "declination"] {
+            object.has(name);
+        }
+    }
     let pitch = object.only_unless("frame", "inertial", |object| {
         required_command(
             object.field("pitch", "Pitch").doc("Angle of the axis above the horizontal plane of the frame."),
@@ -144,7 +150,7 @@ impl Steering {
     }
 
     /// The same for the core.
-    pub(super) fn to_core(&self, events: &[Event], axes: &Axes) -> CoreSteering {
+    pub(super) fn to_core(&self, events: &EventNames, axes: &Axes) -> CoreSteering {
         match self {
             Self::Vertical => CoreSteering::Vertical,
             Self::Velocity => CoreSteering::Velocity,
@@ -171,7 +177,7 @@ impl Steering {
     }
 
     /// Names of events that are not those of one event alone; `pointer` is that of the steering.
-    pub(super) fn name_faults(&self, pointer: &str, events: &[Event]) -> Vec<Fault> {
+    pub(super) fn name_faults(&self, pointer: &str, events: &EventNames) -> Vec<Fault> {
         let Self::Program(_, commands) = self else { return Vec::new() };
         let faults = self.angles().into_iter().zip(commands.iter());
         faults.filter_map(|(field, command)| command.name_fault(&format!("{pointer}/{field}"), events)).collect()

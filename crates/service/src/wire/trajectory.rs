@@ -15,6 +15,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::AngleUnit;
+use super::aerodynamics;
 use super::bodies::{DescribedBody, FlownBodies, FlownBody, FlownSeparation};
 use super::columns::{Columns, Row, csv_text};
 use super::dispersions::Covariance;
@@ -24,7 +25,6 @@ use super::scenario::{FORMULATIONS, SimulateRequest};
 use super::schema::names;
 use super::sensitivities::SensitivitiesAnswer;
 use super::sites::NearestSite;
-use super::vehicle;
 use super::verification::Verification;
 use super::warning::{Purpose, Warning};
 
@@ -444,7 +444,7 @@ impl SimulateResponse {
                 atmosphere: request.atmosphere.kind(),
                 space_weather: request.atmosphere.space_weather.map(SpaceWeatherReport::from),
                 gravity: request.planet.gravity(),
-                aerodynamics: vehicle::kind(&request.vehicle.aerodynamics),
+                aerodynamics: aerodynamics::kind(&request.vehicle.aerodynamics),
                 wind: request.wind.kind(),
             },
             flight,

@@ -7,14 +7,13 @@ use reentry::scenario::{Bound, Stop};
 use reentry::vehicle::{Aerodynamics, Vehicle};
 use serde_json::json;
 
-use super::control::{ControlRequest, control};
-use super::description::Object;
-use super::events::{Condition, Event, MOST_EVENTS, event, impulse};
-use super::parts::{MOST_PARTS, NamedPart};
-use super::reader::Fault;
-use super::scenario::conditions;
-use super::shown::quoted;
-use super::vehicle::aerodynamics;
+use super::{Condition, Event, MOST_EVENTS, conditions, event, impulse};
+use crate::wire::aerodynamics::aerodynamics;
+use crate::wire::control::{ControlRequest, control};
+use crate::wire::description::Object;
+use crate::wire::parts::{MOST_PARTS, NamedPart};
+use crate::wire::reader::Fault;
+use crate::wire::shown::quoted;
 
 /// A body that leaves a vehicle.
 #[derive(Clone, Debug)]
@@ -51,7 +50,7 @@ pub struct BodyStop {
 }
 
 /// A separation.
-pub(super) fn separation(object: &mut Object) -> Option<Separation> {
+pub(in crate::wire) fn separation(object: &mut Object) -> Option<Separation> {
     object.named(
         "Separation",
         "Body that leaves the vehicle: parts with the propellant that is left, their engines off. It flies on in the \
@@ -128,7 +127,11 @@ fn stop(object: &mut Object) -> Option<BodyStop> {
 
 impl Separation {
     /// Names that several bodies have, of those that leave in events or leave others; `pointer` is that of what they leave.
-    pub(super) fn name_faults<'a>(events: &'a [Event], pointer: &str, names: &mut HashSet<&'a str>) -> Vec<Fault> {
+    pub(in crate::wire) fn name_faults<'a>(
+        events: &'a [Event],
+        pointer: &str,
+        names: &mut HashSet<&'a str>,
+    ) -> Vec<Fault> {
         let mut faults = Vec::new();
         for (index, event) in events.iter().enumerate() {
             for (place, Self { name, events, .. }) in event.then.separated.iter().enumerate() {
@@ -144,31 +147,31 @@ impl Separation {
     }
 
     /// Its parts among those of the vehicle.
-    pub(super) fn parts_of(&self, parts: &[NamedPart]) -> Vec<NamedPart> {
+    pub(in crate::wire) fn parts_of(&self, parts: &[NamedPart]) -> Vec<NamedPart> {
         let part = |name: &String| NamedPart::place_of(name, parts).map(|place| parts[place].clone());
         self.parts.iter().filter_map(part).collect()
     }
 
     /// Whether each of its names is that of one part, and of another than the others.
-    pub(super) fn is_of(&self, parts: &[NamedPart]) -> bool {
+    pub(in crate::wire) fn is_of(&self, parts: &[NamedPart]) -> bool {
         let is_known = |name: &String| NamedPart::place_of(name, parts).is_some();
         let is_new = |(index, name): (usize, &String)| !self.parts[..index].contains(name);
         self.parts.iter().all(is_known) && self.parts.iter().enumerate().all(is_new)
     }
 
     /// Whether it gives aerodynamics.
-    pub(super) fn gives_aerodynamics(&self) -> bool {
+    pub(in crate::wire) fn gives_aerodynamics(&self) -> bool {
         self.aerodynamics.is_some()
     }
 
     /// Whether a push on it, an event of it or its steering has a direction that stays in inertial space.
-    pub(super) fn is_inertial(&self) -> bool {
+    pub(in crate::wire) fn is_inertial(&self) -> bool {
         let is_pushed = self.push.is_some_and(|push| matches!(push.along, ThrustAxis::Inertial(_)));
         is_pushed || self.control.is_inertial() || self.events.iter().any(Event::is_inertial)
     }
 
     /// How many bodies it makes, with those that separate from it.
-    pub(super) fn count(&self) -> usize {
+    pub(in crate::wire) fn count(&self) -> usize {
         1 + Event::count_of_bodies(&self.events)
     }
 
@@ -176,7 +179,7 @@ impl Separation {
     ///
     /// # Errors
     /// With what is missing.
-    pub(super) fn vehicle(&self, parts: &[NamedPart], pointer: &str) -> Result<Vehicle, Vec<Fault>> {
+    pub(in crate::wire) fn vehicle(&self, parts: &[NamedPart], pointer: &str) -> Result<Vehicle, Vec<Fault>> {
         let only = if let [only] = parts { Some(only) } else { None };
         let own = only.and_then(|part| part.aerodynamics.clone());
         let aerodynamics = self.aerodynamics.clone().or(own);
@@ -205,7 +208,7 @@ impl Separation {
     }
 
     /// The end of its flight, without the further conditions; with what is not given as the vehicle has it.
-    pub(super) fn stop(&self, vehicle: &Stop) -> Stop {
+    pub(in crate::wire) fn stop(&self, vehicle: &Stop) -> Stop {
         let BodyStop { altitude, ceiling, .. } = self.stop;
         Stop { altitude: altitude.unwrap_or(vehicle.altitude), ceiling, ..Stop::default() }
     }
