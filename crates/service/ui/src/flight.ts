@@ -121,6 +121,11 @@ export function withBodies(run: Run): Run[] {
   return [run, ...bodies];
 }
 
+/** Whether a flight begins on the ground, or loses bodies: it passes the same altitude more than once. */
+export function isLaunched({ case: tree, flight }: Run): boolean {
+  return tree.initial_state.type === 'launch' || flight.bodies.length > 0;
+}
+
 /** Whether a flight is under way at an instant: a body is not before its separation. */
 export function isFlying(flight: Flight, time: number): boolean {
   return time >= (flight.initial.time ?? 0) && time <= (flight.final.time ?? 0);

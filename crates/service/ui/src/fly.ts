@@ -1,11 +1,12 @@
 import { batch, effect } from '@preact/signals';
 import { type Answer, analytic, type Case, type Problem, ProblemError, type Solution, simulate, type Theory } from './api';
 import { tidied } from './case';
-import { flightOf } from './flight';
+import { flightOf, isLaunched } from './flight';
 import { forget } from './form/held';
 import { begin, follow, keep, separate } from './history';
 import { fromFragment, toFragment } from './link';
 import { drawn } from './plots/curves';
+import type { Name } from './quantities';
 import { added, current, draft, isBusy, notice, pins, problem, solution, theory, theoryProblem, waiting } from './store';
 
 /** At most so often, ms, a case that is being changed is flown; less often where the service asks for that. */
@@ -184,7 +185,7 @@ async function flown(tree: Case, moving: boolean): Promise<() => void> {
       theoryProblem.value = beside.problem;
     });
     // Other models have other columns, of which some are to be drawn.
-    if (drawn(flight.final, added.peek()).some((name) => !flight.columns[name])) want();
+    if (columnsDrawn().some((name) => !flight.columns[name])) want();
   };
 }
 
@@ -205,7 +206,13 @@ async function answered({ echo: _, ...tree }: Case, rows: number, signal: AbortS
 /** The columns that are drawn, where the models are those of the flight that is shown; all where it is not known which there are. */
 function columnsOf(tree: Case): { columns?: string[] } {
   const shown = current.peek();
-  return shown && modelsOf(shown.case) === modelsOf(tree) ? { columns: drawn(shown.flight.final, added.peek()) } : {};
+  return shown && modelsOf(shown.case) === modelsOf(tree) ? { columns: columnsDrawn() } : {};
+}
+
+/** The columns that are drawn of the flight that is shown. */
+function columnsDrawn(): Name[] {
+  const shown = current.peek();
+  return shown ? drawn(shown.flight.final, added.peek(), isLaunched(shown)) : [];
 }
 
 /** On which it depends what is known of a flight. */

@@ -121,7 +121,12 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
         </Line>
       );
     case 'json':
-      return <Json label={`${field.label} (JSON)`} path={path} />;
+      return (
+        <div>
+          <Json label={`${field.label} (JSON)`} path={path} />
+          <Faults path={path} isWhole />
+        </div>
+      );
     case 'site':
       return <LaunchPlace path={path} />;
     case 'parts':

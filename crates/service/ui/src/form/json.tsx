@@ -1,9 +1,10 @@
 import { useEffect, useState } from 'preact/hooks';
-import { get, type Path } from '../case';
+import { get, type Path, set } from '../case';
 import { draft } from '../store';
-import { Faults, idOf, inputOf, put } from './line';
+import { idOf, inputOf, put } from './line';
+import { whyNoCase } from './shape';
 
-/** A part of the case as JSON, for what has no fields of its own. A text that is no JSON stays, and the case as it was. */
+/** A part of the case as JSON, for what has no fields of its own. */
 export function Json({ label, path, told }: { label: string; path: Path; told?: string | undefined }) {
   return (
     <details class="json">
@@ -11,39 +12,40 @@ export function Json({ label, path, told }: { label: string; path: Path; told?: 
         {label} {told && <span class="quiet">{told}</span>}
       </summary>
       <JsonInput label={label} path={path} />
-      <Faults path={path} isWhole />
     </details>
   );
 }
 
+/** What is no JSON, or would make the case none, stays as it is typed, and the case as it was. */
 function JsonInput({ label, path }: { label: string; path: Path }) {
   const value = get(draft.value, path);
   const [text, setText] = useState(written(value));
-  const isJson = parsed(text) !== undefined;
+  // The text of the case itself needs no look.
+  const own = text === written(value) ? { value } : read(text, path);
   useEffect(() => {
-    const own = parsed(text);
-    if (own === undefined || JSON.stringify(own.value) !== JSON.stringify(value)) setText(written(value));
+    if ('why' in own || JSON.stringify(own.value) !== JSON.stringify(value)) setText(written(value));
   }, [value]);
   const { id, isBad, describedBy } = inputOf(path, true);
+  const why = 'why' in own ? `${idOf(path)}-why` : undefined;
   return (
     <>
       <textarea
         id={id}
         aria-label={`${label} as JSON`}
-        aria-invalid={isBad || !isJson}
-        aria-describedby={describedBy}
+        aria-invalid={isBad || why !== undefined}
+        aria-describedby={why ?? describedBy}
         rows={Math.min(Math.max(text.split('\n').length, 3), 16)}
         spellcheck={false}
         value={text}
         onInput={(event) => {
           setText(event.currentTarget.value);
-          const own = parsed(event.currentTarget.value);
-          if (own) put(path, own.value);
+          const next = read(event.currentTarget.value, path);
+          if (!('why' in next)) put(path, next.value);
         }}
       />
-      {!isJson && (
-        <p class="fault" id={`${idOf(path)}-json`}>
-          Not valid JSON. The case is unchanged.
+      {'why' in own && (
+        <p class="fault" id={why}>
+          {own.why}. The case is unchanged.
         </p>
       )}
     </>
@@ -54,12 +56,14 @@ function written(value: unknown): string {
   return value === undefined ? '' : JSON.stringify(value, null, 1);
 }
 
-/** What a text says; nothing typed is no value. */
-function parsed(text: string): { value: unknown } | undefined {
-  if (text.trim() === '') return { value: undefined };
+/** What a text says, or why it is not taken. Nothing typed is no value; an element of a list goes by its button. */
+function read(text: string, path: Path): { value: unknown } | { why: string } {
+  if (text.trim() === '' && typeof path.at(-1) === 'string') return { value: undefined };
   try {
-    return { value: JSON.parse(text) };
+    const value = JSON.parse(text);
+    const why = whyNoCase(set(draft.peek(), path, value));
+    return why === null ? { value } : { why: `Not taken: ${why}` };
   } catch {
-    return undefined;
+    return { why: 'Not valid JSON' };
   }
 }

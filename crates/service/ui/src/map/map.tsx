@@ -76,11 +76,16 @@ export default function Maps() {
   );
 }
 
-/** What is not on the map: the surface of another planet, and flights elsewhere. */
+/** The sources of the sites, as their licence asks. */
+const SOURCES = 'Sites: General Catalog of Artificial Space Objects (J. McDowell, planet4589.org, CC BY 4.0), OurAirports and others.';
+
+/** What is on the map and from where; what is not: the surface of another planet, and flights elsewhere. */
 function Ground({ planet }: { planet: string }) {
   const elsewhere = runs.value.filter((run) => !isSameGround(planetOf(run), planet)).length;
   const lines = [
-    isEarth(planet) ? '' : `There is no picture of ${bodyIn(planet)}: meridians and parallels only. Longitudes are positive to the east.`,
+    isEarth(planet)
+      ? SOURCES
+      : `There is no picture of ${bodyIn(planet)}: meridians and parallels only. Longitudes are positive to the east.`,
     elsewhere === 0 ? '' : `${elsewhere === 1 ? 'A pinned flight is' : `${elsewhere} pinned flights are`} on another planet and not shown.`,
   ].filter(Boolean);
   return lines.length === 0 ? null : <p class="quiet">{lines.join(' ')}</p>;

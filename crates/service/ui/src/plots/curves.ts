@@ -31,10 +31,10 @@ export function plotted(known: object, added: Name[]): Name[] {
   return [...THESIS, ...OTHERS, ...added].filter((name, index, all) => name in known && all.indexOf(name) === index);
 }
 
-/** The columns that plots and maps draw. */
-export function drawn(known: object, added: Name[]): Name[] {
+/** The columns that plots and maps draw; of a launch the downrange as well. */
+export function drawn(known: object, added: Name[], isLaunched: boolean): Name[] {
   const placed: Name[] = ['time', 'longitude', 'geodetic_latitude'];
-  const ranged: Name[] = 'downrange' in known ? ['downrange'] : [];
+  const ranged: Name[] = isLaunched && 'downrange' in known ? ['downrange'] : [];
   return [...placed, ...ranged, ...plotted(known, added)].filter((name, index, all) => all.indexOf(name) === index);
 }
 

@@ -1,6 +1,6 @@
 import { useSignal } from '@preact/signals';
 import { columnOf, number, reading, unitOfLoad } from '../figures';
-import { COLOURS, type Flight, isFlying } from '../flight';
+import { COLOURS, type Flight, isFlying, isLaunched } from '../flight';
 import { planetOf } from '../planets';
 import { type Name, QUANTITIES, unitOf } from '../quantities';
 import { Scroll } from '../scroll';
@@ -24,8 +24,7 @@ export function Plots() {
   const unzoom = useSignal(0);
   const flight = current.value?.flight;
   if (!flight) return null;
-  // A launch, or a vehicle that loses parts, passes the same altitude more than once.
-  const byTime = current.value?.case.initial_state.type === 'launch' || flight.bodies.length > 0;
+  const byTime = current.value !== null && isLaunched(current.value);
   const layout = chosen.value ?? (byTime ? 'time' : 'thesis');
   const hasRange = flight.columns.downrange !== undefined;
   const names = plotted(flight.final, added.value);

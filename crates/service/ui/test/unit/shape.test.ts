@@ -181,4 +181,6 @@ it.each([FULL, ...OWN].map((tree) => [tree.name, tree] as const))(
     expect(failures).toEqual([]);
     expect(refused).toBeGreaterThan(50);
   },
+  // A form is made for each of some thousand cases.
+  60_000,
 );
