@@ -400,7 +400,8 @@ async fn it_is_chosen_by_name_or_media_type() {
 
 #[tokio::test]
 async fn every_model_gives_a_message() {
-    for (name, case) in models().into_iter().filter(|(name, _)| *name != "columns") {
+    // One has columns of its own, and one three rows alone.
+    for (name, case) in models().into_iter().filter(|(name, _)| !["columns", "nearest site"].contains(name)) {
         let case = with_all(&case, [("/stop/time", json!(200)), ("/epoch", json!(EPOCH))]);
         let model = case["planet"]["model"].as_str().unwrap_or("earth_wgs84").to_owned();
         if model.starts_with("earth") || model == "mars" {

@@ -105,6 +105,10 @@ fn unsound(answer: &Answer) -> Option<String> {
                     *value = json!(0);
                 }
             }
+            // What leaves the vehicle leaves no other body.
+            if let Some(bodies) = answer.pointer_mut("/bodies").and_then(Value::as_array_mut) {
+                bodies.iter_mut().for_each(|body| body["parent"] = json!(0));
+            }
             // The first phase begins with the flight, and not with an event.
             if let Some(value) = answer.pointer_mut("/phases/0/from") {
                 *value = json!(0);

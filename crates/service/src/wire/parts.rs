@@ -98,7 +98,7 @@ pub(super) fn part(object: &mut Object) -> Option<NamedPart> {
     if let (Some(count), Some(area)) = (count, reference_area)
         && !(area * count_of(count)).is_finite()
     {
-        object.fault_of("reference_area", "must be finite when multiplied by count");
+        object.fault_of("reference_area", "is too large: times count, it exceeds the greatest number");
     }
     let (engine, gives_sea_level) = engine.unzip();
     let count = u32::try_from(count?).ok()?;
