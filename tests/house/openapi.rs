@@ -171,10 +171,11 @@ impl Agreement {
     /// Both refuse the request, or both accept it, but for what the service refuses because of names that refer to each other, and what only
     /// the one that has a name has: a schema does not see that.
     async fn agree_but_for_names(&mut self, path: &str, request: &Value, what: &str) {
-        const OF_NAMES: [&str; 7] = [
+        const OF_NAMES: [&str; 8] = [
             "must be the name of",
             "must be unique",
-            "is required: the body has",
+            "is required: part",
+            "is required for a body of several parts",
             "requires vehicle.parts",
             "must leave a part",
             "must be omitted: the parts of the vehicle",

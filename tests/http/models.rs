@@ -212,7 +212,6 @@ async fn faults_of_columns_are_named() {
         (json!({"columns": ["time", 3]}), "/output/columns/1", "got a number"),
         (json!({"columns": ["time", "speed", "time"]}), "/output/columns/2", "time is given twice"),
         (json!({"columns": []}), "/output/columns", "must have at least 1 entry, got 0"),
-        (json!({"columns": vec!["time"; 46]}), "/output/columns", "must have at most 45 entries, got 46"),
         (json!({"columns": "time"}), "/output/columns", "must be an array of names, got a string"),
         (
             json!({"columns": ["time"], "trajectory": false}),
