@@ -183,6 +183,7 @@ const CASE: [Row; 29] = [
 ];
 
 /// The fields of the other models.
+#[expect(clippy::too_many_lines, reason = "a list")]
 fn of_model(name: &str) -> (&'static str, &'static [Row]) {
     match name {
         "us76" | "vacuum" => ("/atmosphere", &[("/type", Required, Name)]),

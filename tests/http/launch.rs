@@ -172,6 +172,7 @@ async fn an_engine_is_lit_once_unless_it_is_shut_down() {
 }
 
 #[tokio::test]
+#[expect(clippy::too_many_lines, reason = "a list")]
 async fn parts_have_masses_and_engines_that_fit() {
     let steady = Steady::new().await;
     let part = |index: usize, field: &str| format!("/vehicle/parts/{index}/{field}");

@@ -17,7 +17,7 @@ fn numbers() -> Vec<(Field, Range)> {
     for mut field in fields() {
         match field.kind {
             Kind::Number(range) | Kind::NumberOrNull(range) | Kind::NumberOrNumbers(range) => {
-                numbers.push((field, range))
+                numbers.push((field, range));
             }
             Kind::Angle(range) | Kind::Command(range) => {
                 field.request = with(&field.request, "/angle_unit", "deg");
@@ -107,7 +107,9 @@ fn unsound(answer: &Answer) -> Option<String> {
             }
             // What leaves the vehicle leaves no other body.
             if let Some(bodies) = answer.pointer_mut("/bodies").and_then(Value::as_array_mut) {
-                bodies.iter_mut().for_each(|body| body["parent"] = json!(0));
+                for body in bodies {
+                    body["parent"] = json!(0);
+                }
             }
             // The first phase begins with the flight, and not with an event.
             if let Some(value) = answer.pointer_mut("/phases/0/from") {
