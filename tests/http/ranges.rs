@@ -109,6 +109,10 @@ fn unsound(answer: &Answer) -> Option<String> {
             if let Some(bodies) = answer.pointer_mut("/bodies").and_then(Value::as_array_mut) {
                 for body in bodies {
                     body["parent"] = json!(0);
+                    // Its first phase begins with it.
+                    if let Some(from) = body.pointer_mut("/phases/0/from") {
+                        *from = json!(0);
+                    }
                 }
             }
             // The first phase begins with the flight, and not with an event.
