@@ -344,7 +344,8 @@ def test_the_program_tells_its_version_its_codes_and_its_document(service):
 
 @pytest.mark.parametrize("command", ["simulate", "convert", "validate"])
 def test_the_examples_of_the_help_can_be_pasted(command, tmp_path):
-    (tmp_path / "case.json").write_text(json.dumps(CASE))
+    # An OEM has dates.
+    (tmp_path / "case.json").write_text(json.dumps({**CASE, "epoch": "2026-01-01T00:00:00Z"}))
     (tmp_path / "cases.json").write_text(json.dumps([CASE, CASE]))
     (tmp_path / "state.json").write_text(Path(STATE).read_text())
     text = run(command, "--help").stdout.split("Examples:\n")[1].split("\n\n")[0]

@@ -253,7 +253,10 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
     pub fn names_or(self, names: &[&'static str], prefix: &str, others: &[String]) -> Option<Vec<NameOr>> {
         let schema = || {
             let other = json!({"type": "string", "pattern": format!("^{}", prefix.replace('.', "\\."))});
-            let mut list = schema::list(&json!({"anyOf": [schema::words(names), other]}), [1, usize::MAX]);
+            // Generated clients call it so.
+            let mut listed = schema::words(names);
+            listed["title"] = json!("Column");
+            let mut list = schema::list(&json!({"anyOf": [listed, other]}), [1, usize::MAX]);
             list["uniqueItems"] = json!(true);
             list
         };

@@ -171,7 +171,7 @@ function fieldOf(property: Property, schemaName: string, name: string): Field {
   const measured = unit === 'angle' ? { isAngle: true as const } : unit ? { unit } : {};
   if (AS_JSON.has(place)) return { kind: 'json', label };
   if (place === 'Launch.site') return { kind: 'site', label };
-  if (place === 'Vehicle.parts') return { kind: 'parts', label, item: referred('Part', label, {}, place) };
+  if (place === 'Vehicle.parts') return { kind: 'parts', label, item: referred('VehiclePart', label, {}, place) };
   const hint = HINTS[place] ? { hint: HINTS[place] } : {};
   if (property.$ref) return referred(nameOf(property.$ref), label, measured, place);
   switch (property.type) {
