@@ -26,7 +26,7 @@ use num_dual::DualSVec64;
 use crate::interrupt::Interrupt;
 use crate::scalar::Lanes;
 use step::Inside;
-use step_control::{NOT_CONVERGED_SHRINK, StepControl, Stiffness};
+use step_control::{NOT_CONVERGED_SHRINK, StepControl};
 
 /// A system of `N` ordinary differential equations.
 pub trait System<S, const N: usize> {
@@ -49,6 +49,12 @@ pub trait StepBounds<const N: usize>: System<f64, N> {
     /// shorter than accuracy asks for, the system is stiff.
     fn longest_implicit_step(&self, time: f64, state: &[f64; N]) -> f64 {
         self.longest_step(time, state)
+    }
+
+    /// In how long, in `least` or later, the system comes to a corner of its rates of change, s, as far as the present ones foretell: a step
+    /// that goes beyond one may miss the tolerance for that alone.
+    fn time_to_corner(&self, _time: f64, _state: &[f64; N], _derivative: &[f64; N], _least: f64) -> f64 {
+        f64::INFINITY
     }
 
     /// How the rates of change depend on the state: row by row ∂fᵢ/∂yⱼ. Implicit steps need it, for their iterations alone: columns by which
@@ -129,6 +135,8 @@ pub struct Integrator<'a, const N: usize> {
     control: StepControl<'a, N>,
     state: [f64; N],
     derivative: [f64; N],
+    /// The last step, where it was an implicit one from whose end the next one starts.
+    past: Option<radau::Past<N>>,
 }
 
 impl<'a, const N: usize> Integrator<'a, N> {
@@ -137,7 +145,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let derivative = system.derivative(time, &state);
         let mut control = StepControl::new(system, time, &state, &derivative, limits);
         control.shorten(system.longest_step(time, &state));
-        Self { control, state, derivative }
+        Self { control, state, derivative, past: None }
     }
 
     /// What the steps so far cost.
@@ -182,12 +190,15 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 }
                 self.limit_implicit(system);
             } else {
-                let Self { control, state, derivative } = self;
-                let trial = step::attempt(system, control.time, state, derivative, control.length);
+                let Self { control, state, derivative, .. } = self;
+                let length = control.length;
+                let trial = step::attempt(system, control.time, state, derivative, length);
                 if control.accepts(state, &trial) {
                     let end_derivative = system.derivative(trial_end, &trial.end);
                     return Ok(self.take(system, trial, trial_end, end_derivative));
                 }
+                let corner = system.time_to_corner(control.time, state, derivative, LEAST_WAY_TO_CORNER * length);
+                control.end_at_corner(length, corner);
             }
         }
     }
@@ -195,6 +206,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
     pub fn shorten<F: StepBounds<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
+        self.past = None;
         let length = end - step.start_time;
         if step.is_implicit()
             && let Some(trial) = self.attempt_implicit(system, length)
@@ -207,13 +219,56 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.take(system, trial, end, end_derivative)
     }
 
+    /// Ends the step that was taken last inside it, at a part of it, as its interpolant has the state there: which costs one evaluation. None
+    /// where that is not as exact as the step.
+    pub(crate) fn end_inside<F: System<f64, N>>(
+        &mut self,
+        system: &F,
+        step: &Step<N>,
+        interpolant: &Interpolant<N>,
+        part: f64,
+    ) -> Option<Step<N>> {
+        // The interpolant has state and rates of the step at both ends, so that its error inside goes with θ² (1-θ)².
+        let error = self.control.error * (4.0 * part * (1.0 - part)).powi(2);
+        if error > if step.is_implicit() { IMPLICIT_INTERPOLANT } else { EXPLICIT_INTERPOLANT } {
+            return None;
+        }
+        let beginning = step.beginning(system, interpolant, part);
+        self.control.statistics.evaluations += 1;
+        self.past = None;
+        self.go_to_end(&beginning);
+        Some(beginning)
+    }
+
+    /// The length of the next step, s, as it is proposed.
+    pub(crate) fn proposed_length(&self) -> f64 {
+        self.control.length
+    }
+
+    /// The next step ends at a time, s, if it would go beyond: where something is foreseen that will cut it.
+    pub(crate) fn aim_at(&mut self, time: f64) {
+        self.control.aim_at(time);
+    }
+
     /// Goes on from the end of a step with a system, or a state, that changes there. What decays fast there is to be followed first.
     pub fn restart<F: StepBounds<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
-        (self.control.time, self.state) = (time, state);
-        self.derivative = system.derivative(self.control.time, &self.state);
         self.control.statistics.evaluations += 1;
-        self.control.stiffness = Stiffness::default();
-        self.control.shorten(system.longest_step(self.control.time, &self.state));
+        self.restart_with(system, time, state, system.derivative(time, &state));
+    }
+
+    /// The same, where the rate of change is known.
+    pub(crate) fn restart_with<F: StepBounds<N>>(
+        &mut self,
+        system: &F,
+        time: f64,
+        state: [f64; N],
+        derivative: [f64; N],
+    ) {
+        let before = std::mem::replace(&mut self.derivative, derivative);
+        (self.control.time, self.state) = (time, state);
+        self.past = None;
+        self.control.restart(system, &self.state, &self.derivative, &before);
+        self.control.shorten(system.longest_step(time, &self.state));
     }
 
     /// Goes to the end of a trial step.
@@ -225,6 +280,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         end_derivative: [f64; N],
     ) -> Step<N> {
         let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
+        self.past = None;
         self.go_to_end(&step);
         let longest = system.longest_step(end_time, &self.state);
         self.control.limit(longest, || system.longest_implicit_step(end_time, &self.state));
@@ -233,11 +289,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Tries an implicit step of a length, s.
     fn attempt_implicit<F: StepBounds<N>>(&mut self, system: &F, length: f64) -> Option<radau::Trial<N>> {
-        let Self { control, state, derivative } = self;
+        let Self { control, state, derivative, past } = self;
         let start = radau::Start { time: control.time, state, derivative };
         let size = |change: &[f64; N]| control.size(change, state, state);
         let mut evaluations = 0;
-        let trial = radau::attempt(system, &start, length, size, &mut evaluations);
+        let trial = radau::attempt(system, &start, length, past.as_ref(), size, &mut evaluations);
         control.statistics.evaluations += evaluations;
         trial
     }
@@ -254,6 +310,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
             inside: Inside::Implicit(trial.inside),
         };
         self.control.statistics.evaluations += 1;
+        self.past = Some(radau::Past::of(trial, &step));
         self.go_to_end(&step);
         self.limit_implicit(system);
         step
@@ -318,3 +375,10 @@ fn packed<F, const N: usize, const L: usize>(
 ) -> Lanes<L> {
     Lanes(from_fn(|lane| lanes[lane].as_ref().map_or(0.0, |(integrator, ..)| number(integrator))))
 }
+
+/// Of a rejected step: a corner nearer than this part of it is none that it was rejected for.
+const LEAST_WAY_TO_CORNER: f64 = 0.05;
+/// The greatest error inside a step, as a multiple of the tolerance, with which an end inside it counts as exact as its end. Without the factor that
+/// goes with the place, the interpolant of an explicit step is about as exact as the step, and that of an implicit one has a hundred times the error.
+const EXPLICIT_INTERPOLANT: f64 = 0.05;
+const IMPLICIT_INTERPOLANT: f64 = 5e-4;

@@ -81,6 +81,46 @@ pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Op
     (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), &inside))
 }
 
+/// When something that is still to come is foreseen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foreseen {
+    /// In how long, s.
+    pub time: f64,
+    /// How far off that may be, s.
+    pub doubt: f64,
+}
+
+impl Foreseen {
+    /// The first of several.
+    pub fn first(all: impl IntoIterator<Item = Self>) -> Option<Self> {
+        all.into_iter().min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+}
+
+/// When a quantity that falls will come to zero, if that may be within a time, s: by the cubic through what it is now and what it was at the start
+/// of the last step, whose length is given, s. Where there was none, by its present rate alone.
+pub fn foreseen_fall(now: Dual64, before: Option<(f64, Dual64)>, within: f64) -> Option<Foreseen> {
+    if !(now.re > 0.0 && now.eps < 0.0 && now.re < -2.0 * within * now.eps) {
+        return None;
+    }
+    let straight = -now.re / now.eps;
+    let Some((length, before)) = before else {
+        return Some(Foreseen { time: straight, doubt: straight });
+    };
+    let twist = (2.0 * (before.re - now.re) / length + now.eps + before.eps) / (length * length);
+    let half_bend = 0.5 * (now.eps - before.eps) / length;
+    let zero = |bend: f64, twist: f64| {
+        let value = |time: f64| now.re + time * (now.eps + time * (bend + time * twist));
+        let rate = |time: f64| now.eps + time * (2.0 * bend + 3.0 * time * twist);
+        let found = (0..5).fold(straight, |time, _| time - value(time) / rate(time));
+        (found > 0.0 && found.is_finite()).then_some(found)
+    };
+    let time = zero(half_bend + 1.5 * twist * length, twist)?;
+    // The parabola tells how far the cubic may be trusted.
+    let doubt = zero(half_bend, 0.0).map_or(time, |other| (time - other).abs());
+    Some(Foreseen { time, doubt })
+}
+
 /// A part of the step, and the quantity there.
 type Sample = (f64, Dual64);
 

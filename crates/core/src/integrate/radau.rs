@@ -19,7 +19,7 @@ use std::array::from_fn;
 use nalgebra::Complex;
 
 use super::elimination::Factors;
-use super::{StepBounds, System};
+use super::{Step, StepBounds, System};
 use crate::scalar::Scalar;
 
 /// A trial step.
@@ -32,6 +32,31 @@ pub(super) struct Trial<const N: usize> {
     pub(super) error: [f64; N],
 }
 
+/// The step before.
+#[derive(Debug)]
+pub(super) struct Past<const N: usize> {
+    /// s.
+    length: f64,
+    /// The way from its start to its stages, the last of which is its end.
+    stages: [[f64; N]; STAGES],
+}
+
+impl<const N: usize> Past<N> {
+    pub(super) fn of(trial: &Trial<N>, step: &Step<N>) -> Self {
+        let [first, second] = trial.inside;
+        Self { length: step.length(), stages: [first, second, from_fn(|i| step.end[i] - step.start[i])] }
+    }
+
+    /// The way from its end in a time, s, on the cubic through its start and its stages.
+    fn ahead(&self, time: f64) -> [f64; N] {
+        let part = 1.0 + time / self.length;
+        let [c1, c2, c3] = NODES;
+        let weight = |own: f64, a: f64, b: f64| part * (part - a) * (part - b) / (own * (own - a) * (own - b));
+        let weights = [weight(c1, c2, c3), weight(c2, c1, c3), weight(c3, c1, c2) - 1.0];
+        from_fn(|i| (0..STAGES).map(|stage| self.stages[stage][i] * weights[stage]).sum())
+    }
+}
+
 /// From where to where a trial step goes.
 pub(super) struct Start<'a, const N: usize> {
     /// s.
@@ -41,20 +66,25 @@ pub(super) struct Start<'a, const N: usize> {
     pub(super) derivative: &'a [f64; N],
 }
 
-/// Tries a step of the given length, s; none where the iterations do not converge. `error` is the size of a change of the state as a
+/// Tries a step of the given length, s; none where the iterations do not converge. They begin on the polynomial of the step before, if there is
+/// one to go on from, or else on the tangent; so do their equations, with the Jacobian half-way. `error` is the size of a change of the state as a
 /// multiple of the tolerance. Adds to the evaluations.
 pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
     system: &F,
     start: &Start<N>,
     length: f64,
+    past: Option<&Past<N>>,
     error: impl Fn(&[f64; N]) -> f64,
     evaluations: &mut usize,
 ) -> Option<Trial<N>> {
     let &Start { time, state, derivative } = start;
-    let jacobian = system.jacobian(time, state);
+    let ahead = |time: f64| past.map_or_else(|| derivative.map(|rate| rate * time), |past| past.ahead(time));
+    let middle = MEAN_NODE * length;
+    let way = ahead(middle);
+    let jacobian = system.jacobian(time + middle, &from_fn(|i| state[i] + way[i]));
     *evaluations += 1 + (0..N).filter(|column| jacobian.iter().any(|row| row[*column] != 0.0)).count();
     let newton = Newton::new(&jacobian, length)?;
-    let mut stages = newton.first_guess(derivative);
+    let mut stages = NODES.map(|node| ahead(node * length));
     let mut last: Option<f64> = None;
     for _ in 0..ITERATIONS {
         let change = newton.improve(system, time, state, &mut stages);
@@ -78,16 +108,20 @@ pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
 /// The state at the end of a step that was taken before, from a time over a length, s, from another start: see [`follow`](super::follow).
 ///
 /// The derivatives, too, converge like the iterations of the flight, which gained a digit each at least. `jacobian` is that of the
-/// system without derivatives; where the iterations have no equations by it, as those of the flight had, the end is no number.
+/// system without derivatives at a time, s, and in a state; where the iterations have no equations by it, as those of the flight had, the end is no
+/// number.
 pub fn follow_implicitly<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
-    jacobian: &[[f64; N]; N],
+    jacobian: impl FnOnce(f64, &[f64; N]) -> [[f64; N]; N],
     start: &[S; N],
     time: f64,
     length: f64,
 ) -> [S; N] {
-    let Some(newton) = Newton::new(jacobian, length) else { return start.map(|_| S::from(f64::NAN)) };
-    let mut stages = newton.first_guess(&system.derivative(time.into(), start));
+    let derivative = system.derivative(time.into(), start);
+    let middle = MEAN_NODE * length;
+    let jacobian = jacobian(time + middle, &from_fn(|i| (start[i] + derivative[i] * middle).value()));
+    let Some(newton) = Newton::new(&jacobian, length) else { return start.map(|_| S::from(f64::NAN)) };
+    let mut stages = NODES.map(|node| derivative.map(|rate| rate * (node * length)));
     for _ in 0..ITERATIONS {
         newton.improve(system, time, start, &mut stages);
     }
@@ -117,11 +151,6 @@ impl<const N: usize> Newton<N> {
             Factors::of(matrix)
         };
         Some(Self { length, real: factors(GAMMA.into())?, complex: factors(Complex::new(ALPHA, BETA))? })
-    }
-
-    /// The stages along the tangent at the start.
-    fn first_guess<S: Scalar<Value = f64>>(&self, derivative: &[S; N]) -> [[S; N]; STAGES] {
-        NODES.map(|node| derivative.map(|rate| rate * (node * self.length)))
     }
 
     /// Improves the stages by an iteration; returns the change.
@@ -190,6 +219,9 @@ const STAGES: usize = 3;
 
 /// c, when the stages are, in parts of the step: (4 - √6)/10, (4 + √6)/10 and 1.
 pub(super) const NODES: [f64; STAGES] = [0.155051025721682190, 0.644948974278317810, 1.0];
+
+/// Where the Jacobian is taken, in parts of the step: of the stages it then is the nearest to all.
+const MEAN_NODE: f64 = 0.6;
 
 /// The eigenvalues of A⁻¹: γ and α ± iβ.
 const GAMMA: f64 = 3.6378342527444957;

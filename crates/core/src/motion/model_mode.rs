@@ -6,7 +6,7 @@
 
 use num_dual::Dual64;
 
-use super::{Flow, Forces, State};
+use super::{Flow, Forces, State, StateRate};
 use crate::atmosphere::Atmosphere;
 use crate::control::Against;
 use crate::heating::Radiative;
@@ -157,6 +157,19 @@ impl<P: Scalar> Forces<P> {
         boundaries.filter(|(_, boundaries)| !boundaries.is_empty())
     }
 
+    /// At which values of the quantity of a switch, ascending, its formula has a corner within a segment: a second derivative that jumps, at
+    /// the entries of a table.
+    fn corners(&self, switch: Switch) -> &[f64] {
+        match (switch, &self.models.atmosphere, &self.models.wind, &self.models.aerodynamics) {
+            (Switch::Atmosphere, Atmosphere::Table(table), ..) => table.inner(),
+            (Switch::Wind, _, Wind::Table(table), _) => table.inner(),
+            (Switch::Mach, .., Aerodynamics::MachTable(table)) => table.inner(),
+            (Switch::Mach, .., Aerodynamics::AlphaMachTable(table)) => table.inner()[1],
+            (Switch::TableAngleOfAttack, .., Aerodynamics::AlphaMachTable(table)) => table.inner()[0],
+            _ => &[],
+        }
+    }
+
     /// Of every switch the quantity in a state; zero where there is none.
     pub(crate) fn readings<S: Over<P>>(&self, time: S, state: &State<S>) -> [S; Switch::ALL.len()] {
         if !self.has_switches {
@@ -246,6 +259,25 @@ impl Forces {
         let (now, then) = (self.mode.of(switch), next.of(switch));
         let boundary = boundaries.get(if then > now { now } else { now.checked_sub(1)? })?;
         (now != then).then_some(*boundary)
+    }
+
+    /// In how long, in `least` or later, a flight comes to a corner of a formula that is none of its boundaries, s, as far as its present motion
+    /// foretells.
+    pub(crate) fn time_to_corner(&self, now: &StateRate, least: f64) -> f64 {
+        if !self.has_switches {
+            return f64::INFINITY;
+        }
+        let readings = self.readings(now.time, &now.state);
+        let ahead = Switch::ALL.into_iter().flat_map(|switch| {
+            let now = readings[switch as usize];
+            self.corners(switch).iter().map(move |corner| (switch, *corner, (corner - now.re) / now.eps))
+        });
+        let later = ahead.filter(|(.., time)| *time >= least && time.is_finite());
+        let Some((switch, corner, time)) = later.min_by(|a, b| a.2.total_cmp(&b.2)) else { return f64::INFINITY };
+        // Once more from there, since the rates change on the way.
+        let there = self.readings(now.time + time, &now.state.later(time))[switch as usize];
+        let better = time + (corner - there.re) / there.eps;
+        if (better - time).abs() < 0.5 * time { better } else { time }
     }
 
     /// Enters the mode of a state and of where it moves next.

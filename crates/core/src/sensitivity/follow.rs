@@ -182,8 +182,8 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
     fn followed(&self, step: &AnyStep, length: f64) -> [Dual<W>; N] {
         let time = step.start_time();
         if step.is_implicit() {
-            let jacobian = self.motion.jacobian(time, &self.state.map(|number| number.re));
-            follow_implicitly(&self.motion, &jacobian, &self.state, time, length)
+            let jacobian = |time, state: &_| self.motion.jacobian(time, state);
+            follow_implicitly(&self.motion, jacobian, &self.state, time, length)
         } else {
             follow(&self.motion, &self.state, time, length)
         }

@@ -8,7 +8,7 @@ use super::detector::{AT_END, Detector};
 use super::step_view::StepView;
 use crate::coordinates::GreatCircle;
 use crate::event::{Condition, Direction, Quantity, Trigger};
-use crate::integrate::event;
+use crate::integrate::event::{self, Foreseen};
 use crate::motion::{Forces, Formulation, StateRate};
 use crate::scenario::Case;
 use crate::trajectory::Termination;
@@ -20,6 +20,8 @@ pub(super) struct ConditionDetector {
     watched: Vec<Quantity>,
     /// Of these, with their rates, at the end of the last step; the others are zero.
     last: Readings,
+    /// The same at its start, with its length, s.
+    before: Option<(f64, Readings)>,
     /// The initial great circle, from which downrange and ground range are measured.
     track: GreatCircle<Dual64>,
     /// The circumference of the sphere on which they are, m.
@@ -100,7 +102,8 @@ impl ConditionDetector {
         let watched = Quantity::ALL.into_iter().filter(waits).collect();
         let track = GreatCircle::of(&case.initial_state).map(Dual64::from);
         let around = TAU * case.planet.equatorial_radius();
-        let mut conditions = Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()], track, around };
+        let mut conditions =
+            Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()], before: None, track, around };
         conditions.last = conditions.read(forces, start);
         conditions
     }
@@ -249,6 +252,11 @@ impl ConditionDetector {
         })
     }
 
+    /// What was read before the present instant tells nothing of what comes.
+    pub(super) fn forget(&mut self) {
+        self.before = None;
+    }
+
     /// Whether any condition is met at the present instant.
     pub(super) fn is_due(&self) -> bool {
         self.all.iter().any(|pending| pending.status == Status::Due)
@@ -301,12 +309,22 @@ impl Detector for ConditionDetector {
         pending.before(self.quantity(pending.condition.quantity, forces, now))
     }
 
+    fn foresee(&self, _: &Forces, within: f64) -> Option<Foreseen> {
+        let waiting = self.armed().filter(|(_, pending)| pending.condition.quantity != Quantity::Time);
+        let foreseen = waiting.filter_map(|(_, pending)| {
+            let before = self.before.as_ref().map(|(length, readings)| (*length, pending.before_among(readings)));
+            event::foreseen_fall(pending.before_among(&self.last), before, within)
+        });
+        Foreseen::first(foreseen)
+    }
+
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
         if self.is_empty() {
             return;
         }
         let next = self.read_end(step);
         let last = std::mem::replace(&mut self.last, next);
+        self.before = Some((step.length(), last));
         for pending in self.all.iter_mut().filter(|pending| pending.status == Status::Armed) {
             let [last, next] = [last, next].map(|quantities| pending.before_among(&quantities).re);
             // Where conditions are met together, one of them cuts the step.

@@ -11,6 +11,7 @@ use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boun
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
 use crate::event::{Effect, Engine};
+use crate::integrate::event::Foreseen;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Chatter, Formulation, MASS, Singularity, State, StateRate};
@@ -29,6 +30,8 @@ pub(super) struct Flight<'a, F, const N: usize> {
     phase: Phase,
     time: f64,
     state: [f64; N],
+    /// Of the state, where they were asked for after the last step.
+    rates: Option<[f64; N]>,
     /// Of the motion, to look inside steps and ahead of them.
     evaluations: usize,
     pub(super) log: FlightLog,
@@ -74,6 +77,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             phase,
             time,
             state,
+            rates: None,
             evaluations: 0,
             log,
         })
@@ -166,7 +170,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             (None, None, None) => {}
         }
         let may_change = is_cut || halted || self.conditions.is_due() || self.time >= horizon;
-        if may_change { self.apply_changes(crossing, ending, false) } else { Ok(None) }
+        let end = if may_change { self.apply_changes(crossing, ending, false)? } else { None };
+        if end.is_none() {
+            self.look_ahead();
+        }
+        Ok(end)
     }
 
     /// Applies the changes at the end of a step: events, burnout, inflations and the mode of the models; the integration restarts there.
@@ -195,13 +203,39 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if halts(&self.motion, self.time, &self.state) {
             return Err(self.no_direction(self.time));
         }
-        self.integrator.restart(&self.motion, self.time, self.state);
+        match self.rates.take().filter(|_| eventless) {
+            Some(rates) => self.integrator.restart_with(&self.motion, self.time, self.state, rates),
+            None => self.integrator.restart(&self.motion, self.time, self.state),
+        }
         let start = StateRate::of::<F, N>(self.time, &self.state, self.integrator.derivative());
         let boundaries = ModelBoundaryDetector::new(self.motion.forces(), &start);
-        let before = std::mem::replace(&mut self.model_boundaries, boundaries);
+        let before = self.model_boundaries;
+        self.model_boundaries = if eventless { boundaries.going_on(&before) } else { boundaries };
+        if !eventless {
+            self.conditions.forget();
+            self.stop_altitude.forget();
+        }
         match crossing.filter(|crossing| eventless && crossing.is_undone(&before, &boundaries, self.motion.forces())) {
             Some(BoundaryCrossing { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
             None => Ok(None),
+        }
+    }
+
+    /// Aims the next step a little beyond the first place that a detector foresees in it: what lies beyond is not flown in vain, formulas are
+    /// not followed far beyond their segments, and the dense output is exact so near the end of a step.
+    fn look_ahead(&mut self) {
+        let Self { motion, integrator, stop_altitude, model_boundaries, conditions, .. } = self;
+        let (forces, length) = (motion.forces(), integrator.proposed_length());
+        let foreseen = [
+            stop_altitude.foresee(forces, length),
+            model_boundaries.foresee(forces, length),
+            conditions.foresee(forces, length),
+        ];
+        if let Some(Foreseen { time, doubt }) = Foreseen::first(foreseen.into_iter().flatten()) {
+            let way = time + AIM_BEYOND * time + 0.5 * doubt.min(GREATEST_DOUBT * time);
+            if way < length {
+                integrator.aim_at(integrator.time() + way.max(LEAST_WAY * length));
+            }
         }
     }
 
@@ -256,6 +290,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         self.evaluations += 1;
         let now = StateRate::of::<F, N>(self.time, &self.state, &derivative);
         self.conditions.detect_jumps(self.motion.forces(), &now);
+        self.rates = Some(derivative);
     }
 
     /// Finds the conditions that are met at the present instant by a quantity that is on the value and moves on.
@@ -435,3 +470,9 @@ const MOVES: f64 = 1e-6;
 const NEARLY_AT_REST: f64 = 1e-4;
 /// An integration that fails where no more than this part of the mass is left fails because of it.
 const NEARLY_NOTHING: f64 = 1e-2;
+/// By this part of the way to a place that is foreseen a step is aimed beyond it.
+const AIM_BEYOND: f64 = 1e-3;
+/// And by half of the doubt, which is this part of the way at most.
+const GREATEST_DOUBT: f64 = 0.1;
+/// The least part of its length to which a step is cut for the sake of such a place.
+const LEAST_WAY: f64 = 0.1;

@@ -5,7 +5,7 @@ use num_dual::Dual64;
 use super::detector::Detector;
 use super::step_view::StepView;
 use crate::control::Against;
-use crate::integrate::event;
+use crate::integrate::event::{self, Foreseen};
 use crate::motion::{Forces, Formulation, StateRate, Switch, SwitchQuantity};
 
 /// Detects where a flight leaves the segments on which the present formulas hold.
@@ -15,6 +15,8 @@ use crate::motion::{Forces, Formulation, StateRate, Switch, SwitchQuantity};
 pub(super) struct ModelBoundaryDetector {
     /// The quantities on which formulas depend, with their rates, at the end of the last step; zero where there is none.
     readings: [Dual64; Switch::ALL.len()],
+    /// The same at its start, with its length, s.
+    before: Option<(f64, [Dual64; Switch::ALL.len()])>,
 }
 
 /// Where a flight leaves a segment.
@@ -59,7 +61,12 @@ impl BoundaryCrossing {
 
 impl ModelBoundaryDetector {
     pub(super) fn new(forces: &Forces, start: &StateRate) -> Self {
-        Self { readings: read(forces, start) }
+        Self { readings: read(forces, start), before: None }
+    }
+
+    /// Those after a change that leaves their rates as they were before.
+    pub(super) fn going_on(self, before: &Self) -> Self {
+        Self { before: before.before, ..self }
     }
 }
 
@@ -94,8 +101,23 @@ impl Detector for ModelBoundaryDetector {
         crossing.boundary.inside(read(forces, now)[crossing.switch as usize])
     }
 
+    fn foresee(&self, forces: &Forces, within: f64) -> Option<Foreseen> {
+        if !forces.has_switches() {
+            return None;
+        }
+        let around = Switch::ALL.into_iter().flat_map(|switch| {
+            boundaries_around(forces, switch).into_iter().flatten().filter_map(move |boundary| {
+                let of = |readings: &[Dual64; Switch::ALL.len()]| boundary.inside(readings[switch as usize]);
+                let before = self.before.as_ref().map(|(length, readings)| (*length, of(readings)));
+                event::foreseen_fall(of(&self.readings), before, within)
+            })
+        });
+        Foreseen::first(around)
+    }
+
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
         if step.motion.forces().has_switches() {
+            self.before = Some((step.length(), self.readings));
             self.readings = *step.readings_at_end();
         }
     }

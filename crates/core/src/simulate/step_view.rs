@@ -60,10 +60,15 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
         StateRate::of::<F, N>(self.step.start_time, &self.step.start, &self.step.start_derivative)
     }
 
+    /// The state inside.
+    pub(super) fn interpolant(&self) -> &Interpolant<N> {
+        self.interpolant.get_or_init(|| self.step.interpolant(self.motion))
+    }
+
     /// The state at the given part of the step, moving along the flow.
     pub(super) fn inside(&self, part: f64) -> StateRate {
         let time = self.step.time(part);
-        let state = self.interpolant.get_or_init(|| self.step.interpolant(self.motion)).state(part);
+        let state = self.interpolant().state(part);
         StateRate::of::<F, N>(time, &state, &self.motion.derivative(time, &state))
     }
 

@@ -4,7 +4,7 @@ use num_dual::Dual64;
 
 use super::detector::Detector;
 use super::step_view::StepView;
-use crate::integrate::event;
+use crate::integrate::event::{self, Foreseen};
 use crate::motion::{Forces, Formulation, StateRate};
 use crate::planet::Shape;
 
@@ -16,11 +16,13 @@ pub(super) struct StopAltitudeDetector {
     stop_altitude: f64,
     /// The height above the stop altitude, with its rate, at the end of the last step.
     height: Dual64,
+    /// The same at its start, with its length, s.
+    before: Option<(f64, Dual64)>,
 }
 
 impl StopAltitudeDetector {
     pub(super) fn new(shape: Shape, stop_altitude: f64, start: &StateRate) -> Self {
-        let mut detector = Self { shape, stop_altitude, height: Dual64::from(0.0) };
+        let mut detector = Self { shape, stop_altitude, height: Dual64::from(0.0), before: None };
         detector.go_to(start);
         detector
     }
@@ -33,6 +35,12 @@ impl StopAltitudeDetector {
     /// Keeps the height at an instant.
     pub(super) fn go_to(&mut self, now: &StateRate) {
         self.height = self.height_at(now);
+        self.before = None;
+    }
+
+    /// What was read before the present instant tells nothing of what comes.
+    pub(super) fn forget(&mut self) {
+        self.before = None;
     }
 
     /// The height above the stop altitude, m, with its rate.
@@ -55,7 +63,13 @@ impl Detector for StopAltitudeDetector {
         self.height_at(now)
     }
 
+    fn foresee(&self, _: &Forces, within: f64) -> Option<Foreseen> {
+        event::foreseen_fall(self.height, self.before, within)
+    }
+
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
+        let before = (step.length(), self.height);
         self.go_to(&step.end());
+        self.before = Some(before);
     }
 }
