@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::event::{Effect, Event, Quantity, Separation, Throttle, Tilt, Trigger};
 use reentry::part::Part;
-use reentry::planet::{Gravity, Planet, Shape};
+use reentry::planet::Planet;
 use reentry::scenario::{Case, Stop};
 use reentry::steering::{Program, ProgramAxes, Steering};
 use reentry::trajectory::{Termination, Trajectory};
@@ -17,24 +17,8 @@ use reentry::{Atmosphere, Control, PlanetFixed, Wind};
 use super::flights::{fly, with_tolerance};
 use super::rockets::{
     Flame, G0, Inertial, Rocket, at, earth, ignite, launch_axes, lift_off, load, local_axes, miss, motor, normal, on,
-    pad, rises, stage, standard_air, steer, vehicle_of,
+    pad, rises, sounding_rocket, stage, standard_air, steer, still, vehicle_of,
 };
-
-/// A round planet that stands still.
-fn still(radius: f64, gravitational_parameter: f64) -> Planet {
-    Planet {
-        shape: Shape::Sphere { radius },
-        gravity: Gravity::InverseSquare,
-        gravitational_parameter,
-        orbital_gravitational_parameter: gravitational_parameter,
-        rotation_rate: 0.0,
-    }
-}
-
-/// 200 kg and 800 kg of propellant, 30 kN, 300 s.
-fn sounding_rocket() -> Part {
-    stage(200.0, 800.0, 30e3, 300.0, 0.0)
-}
 
 /// Lit at once on the surface at the zero meridian, until it burns out.
 fn burn_in_vacuum(planet: Planet, part: Part, steering: Steering) -> Case {

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use reentry::planet::{Gravity, Zonal};
 use reentry::scenario::Equations;
 use reentry::simulate::SimulationError;
 use reentry::{
@@ -27,6 +28,20 @@ pub(crate) fn target_2() -> Case {
         control: Control::banked(0.8),
         ..Case::new(vehicle(700.0, 0.216_419, 0.2, 0.2), initial_state.to_planet_fixed())
     }
+}
+
+/// A lifting entry at 7.5 km/s over an Earth with zonal gravity.
+pub(crate) fn glide() -> Case {
+    let state = FlightPath {
+        radius: 6_498_137.0,
+        longitude: 0.3,
+        geocentric_latitude: 0.5,
+        speed: 7500.0,
+        flight_path_angle: -0.03,
+        heading: 0.7,
+    };
+    let planet = Planet { gravity: Gravity::Zonal(Zonal::EARTH), ..Planet::EARTH_WGS84 };
+    Case { planet, vehicle: vehicle(5000.0, 12.0, 0.35, 1.2), initial_state: state.to_planet_fixed(), ..target_2() }
 }
 
 /// A capsule comes home without lift, in standard air.

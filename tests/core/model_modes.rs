@@ -16,7 +16,9 @@ use reentry::wind::WindTable;
 use reentry::{Aerodynamics, Atmosphere, Case, Control, FlightPath, Planet, Stop, Trajectory, Vehicle, Wind};
 
 use crate::check::near;
-use crate::core::flights::{config, fly, miss, random_entry, spherical, target_2, try_to_fly, vehicle, with_tolerance};
+use crate::core::flights::{
+    config, fly, glide, miss, random_entry, spherical, target_2, try_to_fly, vehicle, with_tolerance,
+};
 
 fn schedule(against: Against, at: &[f64], value: &[f64], interpolation: Interpolation) -> Command {
     Command::Schedule(Arc::new(Schedule::new(against, at, value, interpolation).unwrap()))
@@ -24,20 +26,6 @@ fn schedule(against: Against, at: &[f64], value: &[f64], interpolation: Interpol
 
 fn banked_by(bank_angle: Command, case: Case) -> Case {
     Case { control: Control { bank_angle, ..Control::banked(0.0) }, ..case }
-}
-
-/// A lifting entry at 7.5 km/s over the flattened Earth.
-fn glide() -> Case {
-    let state = FlightPath {
-        radius: 6_498_137.0,
-        longitude: 0.3,
-        geocentric_latitude: 0.5,
-        speed: 7500.0,
-        flight_path_angle: -0.03,
-        heading: 0.7,
-    };
-    let planet = Planet { gravity: Gravity::Zonal(Zonal::EARTH), ..Planet::EARTH_WGS84 };
-    Case { planet, vehicle: vehicle(5000.0, 12.0, 0.35, 1.2), initial_state: state.to_planet_fixed(), ..target_2() }
 }
 
 fn end(flight: &Trajectory) -> Case {

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use reentry::event::{Direction, Effect, Event, Quantity, Separation, Throttle, Tilt, Trigger};
 use reentry::part::Part;
-use reentry::planet::{Gravity, Planet, Shape};
+use reentry::planet::Planet;
 use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{BodyCase, Case, Scenario, Solver, Stop};
 use reentry::simulate::{SimulationError, simulate_with_bodies};
@@ -17,26 +17,14 @@ use reentry::{Atmosphere, Control, PlanetFixed};
 
 use super::flights::{config, fly, try_to_fly};
 use super::rockets::{
-    G0, at, earth, fly_all, ignite, lift_off, load, local_axes, motor, on, pad, rises, shut_down, stage, steer,
-    vehicle_of, weighed, when,
+    G0, at, earth, fly_all, ignite, lift_off, load, local_axes, motor, on, pad, rises, shut_down, sounding_rocket,
+    stage, steer, still, vehicle_of, weighed, when,
 };
 
 /// A planet whose gravity is the same everywhere: 9.80665 m/s² to the millionth.
 fn plain() -> Planet {
     let radius = 1e11;
-    let gravitational_parameter = G0 * radius * radius;
-    Planet {
-        shape: Shape::Sphere { radius },
-        gravity: Gravity::InverseSquare,
-        gravitational_parameter,
-        orbital_gravitational_parameter: gravitational_parameter,
-        rotation_rate: 0.0,
-    }
-}
-
-/// The stage of the rocket equation: 200 kg, 800 kg of propellant, 30 kN, 300 s.
-fn sounding_rocket() -> Part {
-    stage(200.0, 800.0, 30e3, 300.0, 0.0)
+    still(radius, G0 * radius * radius)
 }
 
 /// Held in vacuum on the plain.

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
 use reentry::interpolation::Hint;
 use reentry::part::{Engine, Part, ThrustEntry, ThrustProfile};
-use reentry::planet::{Gravity, Zonal};
+use reentry::planet::{Gravity, Shape, Zonal};
 use reentry::scenario::{Case, Scenario, Stop};
 use reentry::simulate::{Flights, simulate_with_bodies};
 use reentry::steering::Steering;
@@ -17,6 +17,22 @@ use reentry::{Atmosphere, Planet, PlanetFixed};
 
 /// m/s², by its definition.
 pub(crate) const G0: f64 = 9.806_65;
+
+/// A round planet that stands still.
+pub(crate) fn still(radius: f64, gravitational_parameter: f64) -> Planet {
+    Planet {
+        shape: Shape::Sphere { radius },
+        gravity: Gravity::InverseSquare,
+        gravitational_parameter,
+        orbital_gravitational_parameter: gravitational_parameter,
+        rotation_rate: 0.0,
+    }
+}
+
+/// The stage of the rocket equation: 200 kg and 800 kg of propellant, 30 kN, 300 s.
+pub(crate) fn sounding_rocket() -> Part {
+    stage(200.0, 800.0, 30e3, 300.0, 0.0)
+}
 
 /// The Earth with the flattening of its gravity.
 pub(crate) fn earth() -> Planet {

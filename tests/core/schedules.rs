@@ -5,33 +5,18 @@ use std::sync::Arc;
 use reentry::control::{Against, Command, Interpolation, Schedule};
 use reentry::coordinates::Inertial;
 use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
-use reentry::planet::{Gravity, Zonal};
 use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::Fault;
 use reentry::trajectory::{FlightPoint, Sampling, Termination};
 use reentry::{Atmosphere, Case, Control, FlightPath, Planet, Scenario, Stop, Trajectory};
 
 use crate::check::near;
-use crate::core::flights::{fly, miss, spherical, target_2, vehicle, with_tolerance};
+use crate::core::flights::{fly, glide, miss, spherical, with_tolerance};
 
 fn banked(against: Against, at: &[f64], value: &[f64], interpolation: Interpolation, case: &Case) -> Case {
     let schedule = Schedule::new(against, at, value, interpolation).unwrap();
     let control = Control { bank_angle: Command::Schedule(Arc::new(schedule)), ..case.control.clone() };
     Case { control, ..case.clone() }
-}
-
-/// A lifting entry at 7.5 km/s over an Earth with zonal gravity.
-fn glide() -> Case {
-    let state = FlightPath {
-        radius: 6_498_137.0,
-        longitude: 0.3,
-        geocentric_latitude: 0.5,
-        speed: 7500.0,
-        flight_path_angle: -0.03,
-        heading: 0.7,
-    };
-    let planet = Planet { gravity: Gravity::Zonal(Zonal::EARTH), ..Planet::EARTH_WGS84 };
-    Case { planet, vehicle: vehicle(5000.0, 12.0, 0.35, 1.2), initial_state: state.to_planet_fixed(), ..target_2() }
 }
 
 fn falls(quantity: Quantity, value: f64) -> Condition {
