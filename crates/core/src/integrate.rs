@@ -26,7 +26,7 @@ use num_dual::DualSVec64;
 use crate::interrupt::Interrupt;
 use crate::scalar::Lanes;
 use step::Inside;
-use step_control::{NOT_CONVERGED_SHRINK, StepControl, Stiffness};
+use step_control::{NOT_CONVERGED_SHRINK, StepControl};
 
 /// A system of `N` ordinary differential equations.
 pub trait System<S, const N: usize> {
@@ -49,6 +49,12 @@ pub trait StepBounds<const N: usize>: System<f64, N> {
     /// shorter than accuracy asks for, the system is stiff.
     fn longest_implicit_step(&self, time: f64, state: &[f64; N]) -> f64 {
         self.longest_step(time, state)
+    }
+
+    /// The time to the next corner of the rates of change that is not nearer than `least`, s, as the present rates have it: a step across a
+    /// corner may miss the tolerance for that alone.
+    fn time_to_corner(&self, _time: f64, _state: &[f64; N], _derivative: &[f64; N], _least: f64) -> f64 {
+        f64::INFINITY
     }
 
     /// How the rates of change depend on the state: row by row ∂fᵢ/∂yⱼ. Implicit steps need it, for their iterations alone: columns by which
@@ -129,6 +135,8 @@ pub struct Integrator<'a, const N: usize> {
     control: StepControl<'a, N>,
     state: [f64; N],
     derivative: [f64; N],
+    /// The last step, where it was an implicit one from whose end the next one starts.
+    previous: Option<radau::PreviousStep<N>>,
 }
 
 impl<'a, const N: usize> Integrator<'a, N> {
@@ -137,7 +145,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let derivative = system.derivative(time, &state);
         let mut control = StepControl::new(system, time, &state, &derivative, limits);
         control.shorten(system.longest_step(time, &state));
-        Self { control, state, derivative }
+        Self { control, state, derivative, previous: None }
     }
 
     /// What the steps so far cost.
@@ -171,6 +179,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// When the limit of steps is reached, no step meets the tolerance, or the flag is raised.
     pub fn advance<F: StepBounds<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
         loop {
+            if !self.is_stiff() && self.control.expects_corner() {
+                let corner = self.time_to_corner(system, self.control.length);
+                self.control.go_to_corner(corner);
+            }
             let trial_end = self.control.trial_end(end)?;
             if self.is_stiff() {
                 match self.attempt_implicit(system, self.control.length) {
@@ -182,19 +194,28 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 }
                 self.limit_implicit(system);
             } else {
-                let Self { control, state, derivative } = self;
-                let trial = step::attempt(system, control.time, state, derivative, control.length);
+                let Self { control, state, derivative, .. } = self;
+                let length = control.length;
+                let trial = step::attempt(system, control.time, state, derivative, length);
                 if control.accepts(state, &trial) {
                     let end_derivative = system.derivative(trial_end, &trial.end);
                     return Ok(self.take(system, trial, trial_end, end_derivative));
                 }
+                let corner = self.time_to_corner(system, length);
+                self.control.end_at_corner(length, corner);
             }
         }
+    }
+
+    /// The time to the next corner of the rates that is not just at the start of a step of a length, s.
+    fn time_to_corner<F: StepBounds<N>>(&self, system: &F, length: f64) -> f64 {
+        system.time_to_corner(self.control.time, &self.state, &self.derivative, LEAST_WAY_TO_CORNER * length)
     }
 
     /// Repeats the beginning of a step, so that it ends exactly at `end`; the state there is more accurate than the dense output.
     pub fn shorten<F: StepBounds<N>>(&mut self, system: &F, step: &Step<N>, end: f64) -> Step<N> {
         (self.control.time, self.state, self.derivative) = (step.start_time, step.start, step.start_derivative);
+        self.previous = None;
         let length = end - step.start_time;
         if step.is_implicit()
             && let Some(trial) = self.attempt_implicit(system, length)
@@ -207,13 +228,56 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.take(system, trial, end, end_derivative)
     }
 
+    /// Ends the step that was taken last inside it, at a part of it, as its interpolant has the state there: which costs one evaluation. None
+    /// where that is not as exact as the step.
+    pub(crate) fn end_inside<F: System<f64, N>>(
+        &mut self,
+        system: &F,
+        step: &Step<N>,
+        interpolant: &Interpolant<N>,
+        part: f64,
+    ) -> Option<Step<N>> {
+        // The interpolant has state and rates of the step at both ends, so that its error inside goes with θ² (1-θ)².
+        let error = self.control.error * (4.0 * part * (1.0 - part)).powi(2);
+        if error > if step.is_implicit() { IMPLICIT_INTERPOLANT } else { EXPLICIT_INTERPOLANT } {
+            return None;
+        }
+        let beginning = step.beginning(system, interpolant, part);
+        self.control.statistics.evaluations += 1;
+        self.previous = None;
+        self.go_to_end(&beginning);
+        Some(beginning)
+    }
+
+    /// The length of the next step, s, as it is proposed.
+    pub(crate) fn proposed_length(&self) -> f64 {
+        self.control.length
+    }
+
+    /// The next step ends at a time, s, if it would go beyond: where something is predicted that will cut it.
+    pub(crate) fn aim_at(&mut self, time: f64) {
+        self.control.aim_at(time);
+    }
+
     /// Goes on from the end of a step with a system, or a state, that changes there. What decays fast there is to be followed first.
     pub fn restart<F: StepBounds<N>>(&mut self, system: &F, time: f64, state: [f64; N]) {
-        (self.control.time, self.state) = (time, state);
-        self.derivative = system.derivative(self.control.time, &self.state);
         self.control.statistics.evaluations += 1;
-        self.control.stiffness = Stiffness::default();
-        self.control.shorten(system.longest_step(self.control.time, &self.state));
+        self.restart_with(system, time, state, system.derivative(time, &state));
+    }
+
+    /// The same, where the rate of change is known.
+    pub(crate) fn restart_with<F: StepBounds<N>>(
+        &mut self,
+        system: &F,
+        time: f64,
+        state: [f64; N],
+        derivative: [f64; N],
+    ) {
+        let before = std::mem::replace(&mut self.derivative, derivative);
+        (self.control.time, self.state) = (time, state);
+        self.previous = None;
+        self.control.restart(system, &self.state, &self.derivative, &before);
+        self.control.shorten(system.longest_step(time, &self.state));
     }
 
     /// Goes to the end of a trial step.
@@ -225,6 +289,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         end_derivative: [f64; N],
     ) -> Step<N> {
         let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
+        self.previous = None;
         self.go_to_end(&step);
         let longest = system.longest_step(end_time, &self.state);
         self.control.limit(longest, || system.longest_implicit_step(end_time, &self.state));
@@ -233,11 +298,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Tries an implicit step of a length, s.
     fn attempt_implicit<F: StepBounds<N>>(&mut self, system: &F, length: f64) -> Option<radau::Trial<N>> {
-        let Self { control, state, derivative } = self;
+        let Self { control, state, derivative, previous } = self;
         let start = radau::Start { time: control.time, state, derivative };
         let size = |change: &[f64; N]| control.size(change, state, state);
         let mut evaluations = 0;
-        let trial = radau::attempt(system, &start, length, size, &mut evaluations);
+        let trial = radau::attempt(system, &start, length, previous.as_ref(), size, &mut evaluations);
         control.statistics.evaluations += evaluations;
         trial
     }
@@ -254,6 +319,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
             inside: Inside::Implicit(trial.inside),
         };
         self.control.statistics.evaluations += 1;
+        self.previous = Some(radau::PreviousStep::of(trial, &step));
         self.go_to_end(&step);
         self.limit_implicit(system);
         step
@@ -318,3 +384,10 @@ fn packed<F, const N: usize, const L: usize>(
 ) -> Lanes<L> {
     Lanes(from_fn(|lane| lanes[lane].as_ref().map_or(0.0, |(integrator, ..)| number(integrator))))
 }
+
+/// A corner nearer than this part of a rejected step is not why it was rejected.
+const LEAST_WAY_TO_CORNER: f64 = 0.05;
+/// The greatest error inside a step, as a multiple of the tolerance, with which an end inside it counts as exact as its end. Without the factor that
+/// goes with the place, the interpolant of an explicit step is about as exact as the step, and that of an implicit one has a hundred times the error.
+const EXPLICIT_INTERPOLANT: f64 = 1e-3;
+const IMPLICIT_INTERPOLANT: f64 = 5e-4;

@@ -126,6 +126,11 @@ impl Axis {
         }
     }
 
+    /// The abscissae between the first and the last.
+    fn inner(&self) -> &[f64] {
+        &self.edges[1..self.cells()]
+    }
+
     /// How many cells there are.
     fn cells(&self) -> usize {
         self.edges.len() - 1
@@ -147,7 +152,7 @@ impl Axis {
         let last = hint.0.get();
         let holds =
             |cell: &usize| matches!(self.edges.get(*cell..*cell + 2), Some(&[left, right]) if left <= x && x < right);
-        let inner = &self.edges[1..self.cells()];
+        let inner = self.inner();
         let found = [last + 1, last.saturating_sub(1)].into_iter().find(holds);
         let found = found.unwrap_or_else(|| inner.partition_point(|edge| *edge <= x));
         hint.0.set(found);

@@ -13,6 +13,9 @@ pub trait Interrupt: Debug + Sync {
     fn may_hold(&self, _bytes: usize) -> bool {
         true
     }
+
+    /// A search calls it before each flight, with the number of the flight, from 1: for a display of the progress.
+    fn begins_flight(&self, _number: u64) {}
 }
 
 /// A flag: once it is true, the computation is to end.

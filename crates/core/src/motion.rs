@@ -17,7 +17,7 @@ pub use spherical::Spherical;
 pub use state::State;
 pub use thrust::{Burn, ThrustDirection};
 
-pub(crate) use model_mode::{Chatter, SwitchQuantity};
+pub(crate) use model_mode::{Chatter, SwitchQuantity, SwitchSet};
 pub(crate) use quantity::StateRate;
 pub(crate) use state::MASS;
 pub(crate) use thrust::{along, direction, tilted};
@@ -78,8 +78,8 @@ pub struct Forces<P = f64> {
     lags: [P; 4],
     /// The segment of each piecewise model that is in use.
     mode: ModelMode,
-    /// Whether any model is piecewise.
-    has_switches: bool,
+    /// What switches: the models that are piecewise.
+    switches: SwitchSet,
     /// Whether all models are those of the thesis. Functions with a constant `THESIS` know it when they are compiled, so that what
     /// a case does not use does not cost it a tenth of its time.
     of_thesis: bool,
@@ -223,7 +223,7 @@ impl<P: Scalar> Forces<P> {
         let of_thesis = models.are_of_thesis();
         let by_axis = models.steering.is_attitude() && matches!(models.aerodynamics, Aerodynamics::AlphaMachTable(_));
         let (burn, canopies, held) = (None, None, false);
-        let (mode, has_switches, cache) = (ModelMode::default(), false, LookupCache::default());
+        let (mode, switches, cache) = (ModelMode::default(), SwitchSet::default(), LookupCache::default());
         let mut forces = Self {
             models,
             parameters,
@@ -235,14 +235,14 @@ impl<P: Scalar> Forces<P> {
             held,
             lags: [P::zero(); 4],
             mode,
-            has_switches,
+            switches,
             of_thesis,
             by_mach,
             by_axis,
             by_energy,
             cache,
         };
-        forces.has_switches = Switch::ALL.into_iter().any(|switch| forces.boundaries(switch).is_some());
+        forces.switches = SwitchSet::of(|switch| forces.boundaries(switch).is_some());
         forces
     }
 
@@ -256,7 +256,9 @@ impl<P: Scalar> Forces<P> {
     #[must_use]
     pub fn burning(self, burn: Option<Burn<P>>) -> Self {
         let mut burning = Self { of_thesis: self.of_thesis && burn.is_none(), burn, ..self };
-        burning.has_switches |= burning.boundaries(Switch::LoadLimit).is_some();
+        if burning.boundaries(Switch::LoadLimit).is_some() {
+            burning.switches = burning.switches.with(Switch::LoadLimit);
+        }
         burning
     }
 

@@ -8,7 +8,7 @@ mod outputs;
 mod variation;
 mod varied_forces;
 
-pub use outputs::{Moment, Moved, Output, Slopes, slopes};
+pub use outputs::{Moment, Moved, Output, Slopes, point_at, slopes};
 pub use variation::Variation;
 
 use crate::atmosphere::Atmosphere;

@@ -1,4 +1,4 @@
-//! Propagation of a scenario to its end: the trajectory, or the arrival alone.
+//! Propagation of a scenario to its end: the trajectory, its end with events and peaks, or the arrival alone.
 
 mod bodies;
 mod conditions;
@@ -18,7 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::motion::{Formulation, Singularity, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{ForFormulation, FormulationIn, Phase, Scenario, dispatch};
-use crate::trajectory::{Arrival, Flown, StoredStep, Trajectory, Warning};
+use crate::trajectory::{Arrival, Extremes, Flown, StoredStep, Trajectory, Warning};
 use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
@@ -137,8 +137,15 @@ fn name(switch: Switch) -> &'static str {
 /// When the flight needs too many or too small steps, when it reaches a singularity of the spherical equations, when thrust burns all
 /// of the vehicle or brakes it to rest, and when interrupted.
 pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
-    let case = scenario.case();
-    dispatch(case.solver.equations, case.state_layout(), Record { scenario, interrupt })
+    record(scenario, Kept::Steps, interrupt).map(|flown| Trajectory::new(scenario.case().clone(), flown))
+}
+
+/// Flies the scenario like [`simulate`], but keeps nothing of the flight except its start, its end, its events and its peaks.
+///
+/// # Errors
+/// Those of [`simulate`].
+pub fn extremes(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Extremes, SimulationError> {
+    record(scenario, Kept::Extremes, interrupt).map(|flown| Extremes::new(scenario.case().clone(), flown))
 }
 
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and, but for events, allocates no memory.
@@ -169,28 +176,46 @@ impl ForFormulation for End<'_> {
     }
 }
 
+/// What is kept of a flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kept {
+    /// Its steps as well.
+    Steps,
+    /// Its start, its end, its events and its peaks alone.
+    Extremes,
+}
+
+fn record(scenario: &Scenario, kept: Kept, interrupt: &dyn Interrupt) -> Result<Flown, SimulationError> {
+    let case = scenario.case();
+    dispatch(case.solver.equations, case.state_layout(), Record { scenario, kept, interrupt })
+}
+
 /// A flight that is kept.
 struct Record<'a> {
     scenario: &'a Scenario,
+    kept: Kept,
     interrupt: &'a dyn Interrupt,
 }
 
 impl ForFormulation for Record<'_> {
     type Number = f64;
-    type Output = Result<Trajectory, SimulationError>;
+    type Output = Result<Flown, SimulationError>;
 
     fn with<F: FormulationIn<f64, N>, const N: usize>(self) -> Self::Output
     where
         AnyStep: From<Step<N>>,
     {
-        let Self { scenario, interrupt } = self;
+        let Self { scenario, kept, interrupt } = self;
         let case = scenario.case();
         let mut flight = Flight::start(scenario, F::of_plain(case.forces()), interrupt)?;
-        let mut steps = Vec::with_capacity(TYPICAL_STEPS);
+        let mut steps = Vec::with_capacity(if kept == Kept::Steps { TYPICAL_STEPS } else { 0 });
         let mut peak_tracker = PeakTracker::new(&flight.motion, &flight.integrator, case.may_lift())?;
         let start = flight.instant();
         let arrival = fly(&mut flight, |view| {
             peak_tracker.observe(view)?;
+            if kept == Kept::Extremes {
+                return Ok(());
+            }
             let mode = view.motion.forces().mode();
             steps.push(StoredStep { step: Step::clone(&view.step).into(), phase: view.phase, mode });
             let held = steps.capacity() * size_of::<StoredStep>();
@@ -207,10 +232,7 @@ impl ForFormulation for Record<'_> {
         phases.insert(0, Phase::first(case));
         warnings.extend(others);
         warnings.extend(never_lifted);
-        Ok(Trajectory::new(
-            case.clone(),
-            Flown { start, steps, phases, event_records, separations, end, arrival, peaks, peaks_of_phases, warnings },
-        ))
+        Ok(Flown { start, steps, phases, event_records, separations, end, arrival, peaks, peaks_of_phases, warnings })
     }
 }
 

@@ -1,10 +1,12 @@
 //! The answer: how the flight ended, its peaks, and its state at any time.
 
+mod extremes;
 mod ground_track;
 mod phases;
 mod sampling;
 mod stored_step;
 
+pub use extremes::Extremes;
 pub use phases::{FlightPhase, PhaseStart};
 pub use sampling::{Sampling, TooManyInstants};
 
@@ -419,14 +421,19 @@ impl InsideStep<'_> {
 
 impl Trajectory {
     pub(crate) fn new(case: Case, flown: Flown) -> Self {
-        let origin = Origin::of(case.track_start());
-        let mut flight = Self { case, flown, origin, ground_track: OnceLock::new() };
+        let mut flight = Self::unexamined(case, flown);
         let ranges = flight.outside_ranges();
         flight.flown.warnings.extend(ranges);
         let faded = flight.wind_fades().map(|time| Warning::WindFadedNearPole { time });
         flight.flown.warnings.extend(faded);
         flight.flown.warnings.sort_by(|a, b| a.time().total_cmp(&b.time()));
         flight
+    }
+
+    /// The same without the warnings that are found on its steps.
+    fn unexamined(case: Case, flown: Flown) -> Self {
+        let origin = Origin::of(case.track_start());
+        Self { case, flown, origin, ground_track: OnceLock::new() }
     }
 
     /// For what the correlations of the heat flux were not made, at the peaks of their fluxes.
@@ -490,6 +497,14 @@ impl Trajectory {
     /// When the flight ended, s.
     pub fn end_time(&self) -> f64 {
         self.flown.arrival.time
+    }
+
+    /// How far along the initial great circle the flight ended, within half a turn either way, and how far to the right of it, m on the sphere
+    /// with the equatorial radius; none where the flight starts vertically or at rest.
+    pub(crate) fn range_of_end(&self) -> Option<[f64; 2]> {
+        let range = self.origin.great_circle.along_and_across(&self.arrival().state.position)?;
+        let sphere = self.case.forces().planet().equatorial_radius();
+        Some(range.map(|angle| angle * sphere))
     }
 
     /// Where and how it ended.

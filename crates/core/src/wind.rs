@@ -43,6 +43,11 @@ impl WindTable {
         self.velocity.range()
     }
 
+    /// The altitudes between them, m.
+    pub fn inner(&self) -> &[f64] {
+        self.velocity.inner()
+    }
+
     /// The velocity to the east and to the north, m/s, at an altitude, m, by the formula of a segment: 0 below the table, 1 inside, 2 above.
     #[inline(always)]
     pub fn velocity<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> [S; 2] {

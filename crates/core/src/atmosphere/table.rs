@@ -151,6 +151,11 @@ impl Table {
         self.log_density.range()
     }
 
+    /// The altitudes between them, m.
+    pub fn inner(&self) -> &[f64] {
+        self.log_density.inner()
+    }
+
     /// Whether it knows the temperature.
     pub fn has_temperature(&self) -> bool {
         self.temperature.is_some()

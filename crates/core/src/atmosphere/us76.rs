@@ -139,20 +139,21 @@ pub fn density_and_sound_in<S: Scalar>(segment: usize, altitude: S) -> (S, S) {
 /// ```
 #[inline(always)]
 pub fn sample_in<S: Scalar>(segment: usize, altitude: S) -> AtmosphereSample<S> {
-    let (density, speed_of_sound) = density_and_sound_in(segment, altitude);
     let altitude = within_bounds(segment, altitude);
-    let (molecular_scale_temperature, temperature) = match TABLE.layers.get(segment) {
-        Some(layer) => {
-            let molecular_scale_temperature = layer.molecular_scale_temperature(&layer.place(altitude));
-            (molecular_scale_temperature, molecular_scale_temperature * weight_ratio(altitude))
-        }
-        None => (TABLE.molecular_scale_temperature_of_gases(altitude), thermosphere(segment, altitude)),
+    let (density, molecular_scale_temperature, temperature, of_sound) = if let Some(layer) = TABLE.layers.get(segment) {
+        let place = layer.place(altitude);
+        let temperature = layer.molecular_scale_temperature(&place);
+        (layer.density(&place), temperature, temperature * weight_ratio(altitude), temperature)
+    } else {
+        let temperature = thermosphere(segment, altitude);
+        let molecular_scale_temperature = TABLE.molecular_scale_temperature_of_gases(altitude);
+        (TABLE.density_of_gases(altitude), molecular_scale_temperature, temperature, temperature)
     };
     AtmosphereSample {
         density,
         temperature: Some(temperature),
         pressure: Some(density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT)),
-        speed_of_sound: Some(speed_of_sound),
+        speed_of_sound: Some(speed_of_sound(of_sound)),
     }
 }
 

@@ -48,16 +48,7 @@ pub fn first_crossing(
     closely: bool,
     inside: impl Fn(f64) -> Dual64,
 ) -> Option<f64> {
-    let dips = start.eps < 0.0 && end.eps > 0.0;
-    let rises = start.eps > 0.0 && end.eps < 0.0;
-    let reach = 4.0 * length * start.eps.abs().max(end.eps.abs());
-    let crosses = match (start.re > 0.0, end.re > 0.0) {
-        (true, false) => true,
-        (true, true) => dips || closely && start.re.min(end.re) <= reach,
-        (false, false) => rises || closely && start.re.max(end.re) >= -reach,
-        (false, true) => false,
-    };
-    if !crosses {
+    if !may_cross(start, end, length, closely) {
         return None;
     }
     let mut from = (0.0, start);
@@ -69,16 +60,77 @@ pub fn first_crossing(
         }
         from = to;
     }
-    if dips || rises {
+    if dips(start, end) || rises(start, end) {
         // Between the quarters the rates may tell of no turn, or of another.
         return crossing_between((0.0, start), (1.0, end), &inside);
     }
     None
 }
 
+/// Whether [`first_crossing`] looks inside the step.
+pub fn may_cross(start: Dual64, end: Dual64, length: f64, closely: bool) -> bool {
+    let reach = || 4.0 * length * start.eps.abs().max(end.eps.abs());
+    match (start.re > 0.0, end.re > 0.0) {
+        (true, false) => true,
+        (true, true) => dips(start, end) || closely && start.re.min(end.re) <= reach(),
+        (false, false) => rises(start, end) || closely && start.re.max(end.re) >= -reach(),
+        (false, true) => false,
+    }
+}
+
+/// Whether the rates at the ends of a step tell of a minimum inside.
+fn dips(start: Dual64, end: Dual64) -> bool {
+    start.eps < 0.0 && end.eps > 0.0
+}
+
+/// Whether they tell of a maximum inside.
+fn rises(start: Dual64, end: Dual64) -> bool {
+    start.eps > 0.0 && end.eps < 0.0
+}
+
 /// The part of the step at which the quantity is greatest, if it rises at the start and falls at the end.
 pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
     (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), &inside))
+}
+
+/// When a step is expected to reach a place that will cut it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictedCrossing {
+    /// From now, s.
+    pub time: f64,
+    /// By how much that may be off, s.
+    pub uncertainty: f64,
+}
+
+impl PredictedCrossing {
+    /// The first of several.
+    pub fn first(all: impl IntoIterator<Item = Self>) -> Option<Self> {
+        all.into_iter().min_by(|a, b| a.time.total_cmp(&b.time))
+    }
+}
+
+/// When a falling quantity will reach zero, if that may be within a time, s: extrapolated by the cubic through its values and rates at both ends of
+/// the last step. `before`: the length of that step, s, and the quantity at its start; where there is none, the present rate is extrapolated.
+pub fn predicted_fall(now: Dual64, before: Option<(f64, Dual64)>, within: f64) -> Option<PredictedCrossing> {
+    if !(now.re > 0.0 && now.eps < 0.0 && now.re < -2.0 * within * now.eps) {
+        return None;
+    }
+    let straight = -now.re / now.eps;
+    let Some((length, before)) = before else {
+        return Some(PredictedCrossing { time: straight, uncertainty: straight });
+    };
+    let twist = (2.0 * (before.re - now.re) / length + now.eps + before.eps) / (length * length);
+    let half_bend = 0.5 * (now.eps - before.eps) / length;
+    let zero = |bend: f64, twist: f64| {
+        let value = |time: f64| now.re + time * (now.eps + time * (bend + time * twist));
+        let rate = |time: f64| now.eps + time * (2.0 * bend + 3.0 * time * twist);
+        let found = (0..5).fold(straight, |time, _| time - value(time) / rate(time));
+        (found > 0.0 && found.is_finite()).then_some(found)
+    };
+    let time = zero(half_bend + 1.5 * twist * length, twist)?;
+    // The parabola tells how far the cubic may be trusted.
+    let uncertainty = zero(half_bend, 0.0).map_or(time, |other| (time - other).abs());
+    Some(PredictedCrossing { time, uncertainty })
 }
 
 /// A part of the step, and the quantity there.

@@ -19,7 +19,7 @@ use std::array::from_fn;
 use nalgebra::Complex;
 
 use super::elimination::Factors;
-use super::{StepBounds, System};
+use super::{Step, StepBounds, System};
 use crate::scalar::Scalar;
 
 /// A trial step.
@@ -30,6 +30,43 @@ pub(super) struct Trial<const N: usize> {
     pub(super) end: [f64; N],
     /// The error by an embedded method of order 3.
     pub(super) error: [f64; N],
+    /// By which its iterations converged fast, if they did: it will do for the next step.
+    jacobian: Option<[[f64; N]; N]>,
+}
+
+/// The step before.
+#[derive(Debug)]
+pub(super) struct PreviousStep<const N: usize> {
+    /// s.
+    length: f64,
+    /// The way from its start to its stages, the last of which is its end.
+    stages: [[f64; N]; STAGES],
+    jacobian: Option<[[f64; N]; N]>,
+}
+
+impl<const N: usize> PreviousStep<N> {
+    pub(super) fn of(trial: &Trial<N>, step: &Step<N>) -> Self {
+        let [first, second] = trial.inside;
+        Self {
+            length: step.length(),
+            stages: [first, second, from_fn(|i| step.end[i] - step.start[i])],
+            jacobian: trial.jacobian,
+        }
+    }
+
+    /// Whether its polynomial may be extrapolated over a step of a length, s: farther, it leads astray.
+    fn reaches(&self, length: f64) -> bool {
+        length <= LONGEST_EXTRAPOLATION * self.length
+    }
+
+    /// The way from its end to a time after it, s, on the cubic through its start and its stages.
+    fn extrapolated(&self, time: f64) -> [f64; N] {
+        let part = 1.0 + time / self.length;
+        let [c1, c2, c3] = NODES;
+        let weight = |own: f64, a: f64, b: f64| part * (part - a) * (part - b) / (own * (own - a) * (own - b));
+        let weights = [weight(c1, c2, c3), weight(c2, c1, c3), weight(c3, c1, c2) - 1.0];
+        from_fn(|i| (0..STAGES).map(|stage| self.stages[stage][i] * weights[stage]).sum())
+    }
 }
 
 /// From where to where a trial step goes.
@@ -41,20 +78,45 @@ pub(super) struct Start<'a, const N: usize> {
     pub(super) derivative: &'a [f64; N],
 }
 
-/// Tries a step of the given length, s; none where the iterations do not converge. `error` is the size of a change of the state as a
-/// multiple of the tolerance. Adds to the evaluations.
+/// Tries a step of the given length, s; none where the iterations do not converge. They begin on the polynomial of the step before, if there is
+/// one to go on from, or else on the tangent. Their equations are by the Jacobian of the step before, if that served well, or else by that
+/// half-way. `error` is the size of a change of the state as a multiple of the tolerance. Adds to the evaluations.
 pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
     system: &F,
     start: &Start<N>,
     length: f64,
+    previous: Option<&PreviousStep<N>>,
     error: impl Fn(&[f64; N]) -> f64,
     evaluations: &mut usize,
 ) -> Option<Trial<N>> {
     let &Start { time, state, derivative } = start;
-    let jacobian = system.jacobian(time, state);
+    let previous = previous.filter(|previous| previous.reaches(length));
+    let ahead =
+        |time: f64| previous.map_or_else(|| derivative.map(|rate| rate * time), |previous| previous.extrapolated(time));
+    let guess = NODES.map(|node| ahead(node * length));
+    let mut iterated = |jacobian| iterate(system, start, length, jacobian, guess, &error, evaluations);
+    if let Some(trial) = previous.and_then(|previous| previous.jacobian).and_then(&mut iterated) {
+        return Some(trial);
+    }
+    let middle = MEAN_NODE * length;
+    let way = ahead(middle);
+    let jacobian = system.jacobian(time + middle, &from_fn(|i| state[i] + way[i]));
+    let trial = iterated(jacobian);
     *evaluations += 1 + (0..N).filter(|column| jacobian.iter().any(|row| row[*column] != 0.0)).count();
+    trial
+}
+
+/// Improves the stages of a trial step by equations with a Jacobian until what is left is far below the tolerance; none if they do not converge.
+fn iterate<F: StepBounds<N>, const N: usize>(
+    system: &F,
+    &Start { time, state, derivative }: &Start<N>,
+    length: f64,
+    jacobian: [[f64; N]; N],
+    mut stages: [[f64; N]; STAGES],
+    error: impl Fn(&[f64; N]) -> f64,
+    evaluations: &mut usize,
+) -> Option<Trial<N>> {
     let newton = Newton::new(&jacobian, length)?;
-    let mut stages = newton.first_guess(derivative);
     let mut last: Option<f64> = None;
     for _ in 0..ITERATIONS {
         let change = newton.improve(system, time, state, &mut stages);
@@ -67,7 +129,8 @@ pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
                 return None;
             }
             if size * ratio < CONVERGED || size < CONVERGED * GREATEST_RATIO {
-                return Some(newton.trial(state, derivative, stages));
+                let jacobian = (ratio < FAST_RATIO).then_some(jacobian);
+                return Some(Trial { jacobian, ..newton.trial(state, derivative, stages) });
             }
         }
         last = Some(size);
@@ -78,16 +141,20 @@ pub(super) fn attempt<F: StepBounds<N>, const N: usize>(
 /// The state at the end of a step that was taken before, from a time over a length, s, from another start: see [`follow`](super::follow).
 ///
 /// The derivatives, too, converge like the iterations of the flight, which gained a digit each at least. `jacobian` is that of the
-/// system without derivatives; where the iterations have no equations by it, as those of the flight had, the end is no number.
+/// system without derivatives at a time, s, and in a state; where the iterations have no equations by it, as those of the flight had, the end is no
+/// number.
 pub fn follow_implicitly<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
     system: &F,
-    jacobian: &[[f64; N]; N],
+    jacobian: impl FnOnce(f64, &[f64; N]) -> [[f64; N]; N],
     start: &[S; N],
     time: f64,
     length: f64,
 ) -> [S; N] {
-    let Some(newton) = Newton::new(jacobian, length) else { return start.map(|_| S::from(f64::NAN)) };
-    let mut stages = newton.first_guess(&system.derivative(time.into(), start));
+    let derivative = system.derivative(time.into(), start);
+    let middle = MEAN_NODE * length;
+    let jacobian = jacobian(time + middle, &from_fn(|i| (start[i] + derivative[i] * middle).value()));
+    let Some(newton) = Newton::new(&jacobian, length) else { return start.map(|_| S::from(f64::NAN)) };
+    let mut stages = NODES.map(|node| derivative.map(|rate| rate * (node * length)));
     for _ in 0..ITERATIONS {
         newton.improve(system, time, start, &mut stages);
     }
@@ -117,11 +184,6 @@ impl<const N: usize> Newton<N> {
             Factors::of(matrix)
         };
         Some(Self { length, real: factors(GAMMA.into())?, complex: factors(Complex::new(ALPHA, BETA))? })
-    }
-
-    /// The stages along the tangent at the start.
-    fn first_guess<S: Scalar<Value = f64>>(&self, derivative: &[S; N]) -> [[S; N]; STAGES] {
-        NODES.map(|node| derivative.map(|rate| rate * (node * self.length)))
     }
 
     /// Improves the stages by an iteration; returns the change.
@@ -173,7 +235,7 @@ impl<const N: usize> Newton<N> {
         let [e1, e2, e3] = ERROR.map(|weight| weight / self.length);
         let defect = from_fn(|i| derivative[i] + first[i] * e1 + second[i] * e2 + last[i] * e3);
         let [error, _] = self.real.solve([defect, [0.0; N]]);
-        Trial { inside: [first, second], end: from_fn(|i| start[i] + last[i]), error }
+        Trial { inside: [first, second], end: from_fn(|i| start[i] + last[i]), error, jacobian: None }
     }
 }
 
@@ -190,6 +252,15 @@ const STAGES: usize = 3;
 
 /// c, when the stages are, in parts of the step: (4 - √6)/10, (4 + √6)/10 and 1.
 pub(super) const NODES: [f64; STAGES] = [0.155051025721682190, 0.644948974278317810, 1.0];
+
+/// Iterations whose changes fall by this factor converge fast: with the same equations the next step takes no more of them.
+const FAST_RATIO: f64 = 0.03;
+
+/// How many times as long as the step before a step may be, if it is to begin on the polynomial of that.
+const LONGEST_EXTRAPOLATION: f64 = 2.0;
+
+/// Where the Jacobian is taken, in parts of the step: of the stages it then is the nearest to all.
+const MEAN_NODE: f64 = 0.6;
 
 /// The eigenvalues of A⁻¹: γ and α ± iβ.
 const GAMMA: f64 = 3.6378342527444957;
@@ -216,6 +287,6 @@ const ERROR: [f64; STAGES] = [-10.048809399827416, 1.3821427331607485, -0.333333
 /// Newton iterations, of which each gains a digit at least.
 const ITERATIONS: usize = 10;
 /// To what part of the tolerance they are iterated.
-const CONVERGED: f64 = 0.01;
+const CONVERGED: f64 = 0.02;
 /// Of the changes in two iterations that follow each other.
 const GREATEST_RATIO: f64 = 0.1;

@@ -39,13 +39,24 @@ pub(super) enum Inside<const N: usize> {
     Explicit([[f64; N]; KEPT]),
     /// The way to the first two stages of Radau IIA.
     Implicit([[f64; N]; 2]),
+    /// Of the beginning of a longer step: what the interpolant of that rests on.
+    Beginning {
+        /// Whether that was an implicit one.
+        is_implicit: bool,
+        /// Of the longer step, s.
+        length: f64,
+        coefficients: [[f64; N]; 7],
+    },
 }
 
 /// The state at every instant inside a step: to order 7, and to order 3 where the step is implicit.
 #[derive(Clone, Debug)]
 pub struct Interpolant<const N: usize> {
     start_time: f64,
+    /// s.
     length: f64,
+    /// Of the step whose polynomials these are, and of which it may be the beginning alone, s.
+    whole_length: f64,
     start: [f64; N],
     coefficients: [[f64; N]; 7],
 }
@@ -143,11 +154,23 @@ impl<const N: usize> Step<N> {
 
     /// Whether it is a step of an implicit method, as they are taken where the system is stiff.
     pub fn is_implicit(&self) -> bool {
-        matches!(self.inside, Inside::Implicit(_))
+        matches!(self.inside, Inside::Implicit(_) | Inside::Beginning { is_implicit: true, .. })
     }
 
-    /// The state inside, which takes [`Interpolant::EVALUATIONS`] of the derivative, and none where the step is implicit.
+    /// The state inside, which takes [`Interpolant::EVALUATIONS`] of the derivative, and none where the step is implicit,
+    /// or the beginning of a longer one.
     pub fn interpolant<F: System<f64, N>>(&self, system: &F) -> Interpolant<N> {
+        let Self { start_time, start, .. } = *self;
+        let length = self.length();
+        let whole_length = match self.inside {
+            Inside::Beginning { length, .. } => length,
+            Inside::Explicit(_) | Inside::Implicit(_) => length,
+        };
+        Interpolant { start_time, length, whole_length, start, coefficients: self.coefficients(system) }
+    }
+
+    /// What the state inside rests on.
+    fn coefficients<F: System<f64, N>>(&self, system: &F) -> [[f64; N]; 7] {
         let Self { start, end, start_derivative, end_derivative, .. } = *self;
         let length = self.length();
         let increment: [f64; N] = std::array::from_fn(|i| end[i] - start[i]);
@@ -156,6 +179,7 @@ impl<const N: usize> Step<N> {
             std::array::from_fn(|i| increment[i] * 2.0 - (start_derivative[i] + end_derivative[i]) * length);
         let [f4, f5, f6, f7] = match &self.inside {
             Inside::Explicit(slopes) => self.explicit_rest(system, slopes),
+            Inside::Beginning { coefficients, .. } => return *coefficients,
             Inside::Implicit(stages) => {
                 // What the cubic of the ends leaves of the two stages is θ² (1-θ)² (F₄ + θ F₅) there.
                 let left = |stage: usize, i: usize| {
@@ -169,11 +193,23 @@ impl<const N: usize> Step<N> {
                 [f4, f5, [0.0; N], [0.0; N]]
             }
         };
-        Interpolant {
-            start_time: self.start_time,
-            length,
-            start,
-            coefficients: [increment, bend, twist, f4, f5, f6, f7],
+        [increment, bend, twist, f4, f5, f6, f7]
+    }
+
+    /// The beginning of the step up to a part of it, where `interpolant` is that of the step.
+    pub(super) fn beginning<F: System<f64, N>>(&self, system: &F, interpolant: &Interpolant<N>, part: f64) -> Self {
+        let end_time = self.time(part);
+        let end = interpolant.state(part);
+        Self {
+            end_time,
+            end,
+            end_derivative: system.derivative(end_time, &end),
+            inside: Inside::Beginning {
+                is_implicit: self.is_implicit(),
+                length: interpolant.whole_length,
+                coefficients: interpolant.coefficients,
+            },
+            ..*self
         }
     }
 
@@ -193,7 +229,7 @@ impl<const N: usize> Step<N> {
 
     /// What the state inside costs: evaluations of the derivative.
     pub fn interpolant_evaluations(&self) -> usize {
-        if self.is_implicit() { 0 } else { Interpolant::<N>::EVALUATIONS }
+        if matches!(self.inside, Inside::Explicit(_)) { Interpolant::<N>::EVALUATIONS } else { 0 }
     }
 }
 
@@ -203,6 +239,7 @@ impl<const N: usize> Interpolant<N> {
 
     /// The state at the given part of the step, 0 at its start and 1 at its end.
     pub fn state(&self, part: f64) -> [f64; N] {
+        let part = part * (self.length / self.whole_length);
         // y = y₀ + θ (F₁ + (1-θ) (F₂ + θ (F₃ + (1-θ) (F₄ + θ (F₅ + (1-θ) (F₆ + θ F₇))))))
         let rest = 1.0 - part;
         let [f1, f2, f3, f4, f5, f6, f7] = &self.coefficients;
@@ -210,6 +247,23 @@ impl<const N: usize> Interpolant<N> {
             let inner = (f7[i] * part + f6[i]) * rest + f5[i];
             let middle = (inner * part + f4[i]) * rest + f3[i];
             ((middle * part + f2[i]) * rest + f1[i]) * part + self.start[i]
+        })
+    }
+
+    /// Its rate of change per second there, that of the polynomial: a maximum that is found by it is one of the states.
+    pub fn rate(&self, part: f64) -> [f64; N] {
+        let part = part * (self.length / self.whole_length);
+        let rest = 1.0 - part;
+        let [f1, f2, f3, f4, f5, f6, f7] = &self.coefficients;
+        std::array::from_fn(|i| {
+            // Each factor in turn, with its derivative by θ.
+            let (value, slope) = (f7[i] * part + f6[i], f7[i]);
+            let (value, slope) = (value * rest + f5[i], slope * rest - value);
+            let (value, slope) = (value * part + f4[i], slope * part + value);
+            let (value, slope) = (value * rest + f3[i], slope * rest - value);
+            let (value, slope) = (value * part + f2[i], slope * part + value);
+            let (value, slope) = (value * rest + f1[i], slope * rest - value);
+            (slope * part + value) / self.whole_length
         })
     }
 

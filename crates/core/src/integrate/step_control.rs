@@ -19,8 +19,58 @@ pub(super) struct StepControl<'a, const N: usize> {
     stride: f64,
     /// By how much the next accepted step may lengthen it: not at all after a rejected one.
     growth: f64,
+    /// Where the next step ends if it would go beyond, s.
+    aim: f64,
+    /// Of the last accepted step, as a multiple of the tolerance.
+    pub(super) error: f64,
+    predictive: PredictiveControl,
+    corners: CornerSteps,
     pub(super) stiffness: Stiffness,
     pub(super) statistics: Statistics,
+}
+
+/// Predictive control of the step length: the length at which the error would be the tolerance changes from step to step, and the next change is
+/// expected to be like the last one.
+#[derive(Debug)]
+struct PredictiveControl {
+    /// That length at the last step, s; 0 where the error of that step was too small to tell.
+    last: f64,
+    /// Whether it has only grown since the integration started.
+    only_grew: bool,
+}
+
+impl PredictiveControl {
+    const START: Self = Self { last: 0.0, only_grew: true };
+
+    /// The factor by which that length is expected to change, after a step of a length, s, and an error; `fitting`: how many times as long a step
+    /// would have had the tolerance as its error.
+    ///
+    /// Where the length falls, as on the way into denser air, control by the last error alone makes every step too long, and it is rejected. Where
+    /// the length rises, the factor is used only if it has risen since the start, as while a transient decays: elsewhere it may fall next.
+    ///
+    /// # Reference
+    /// K. Gustafsson, Control-theoretic techniques for stepsize selection in implicit Runge-Kutta methods, ACM Transactions on
+    /// Mathematical Software 20 (1994), 496-517; Hairer and Wanner, section IV.8, on the selection of the step size.
+    fn change(&mut self, length: f64, error: f64, fitting: f64) -> f64 {
+        if error < SIGNIFICANT_ERROR {
+            self.last = 0.0;
+            return 1.0;
+        }
+        let now = length * fitting;
+        let last = std::mem::replace(&mut self.last, now);
+        let change = if last > 0.0 { now / last } else { 1.0 };
+        self.only_grew = self.only_grew && change >= 1.0;
+        change.clamp(LEAST_CHANGE, if self.only_grew { GREATEST_CHANGE } else { 1.0 })
+    }
+}
+
+/// Steps that end at corners of the rates, and are not tried across them first: where one corner had a step rejected, the next one mostly does too.
+#[derive(Debug)]
+struct CornerSteps {
+    /// So many are still to come.
+    left: u32,
+    /// So many follow the next rejection: more each time, so that corners between which steps are much shorter than without them cost little.
+    granted: u32,
 }
 
 /// What the explicit steps tell of stiffness.
@@ -60,6 +110,10 @@ impl<'a, const N: usize> StepControl<'a, N> {
             length: 0.0,
             stride: 0.0,
             growth: GREATEST_GROWTH,
+            aim: f64::INFINITY,
+            error: 1.0,
+            predictive: PredictiveControl::START,
+            corners: CornerSteps { left: 0, granted: 1 },
             stiffness: Stiffness::default(),
             statistics,
         };
@@ -80,12 +134,62 @@ impl<'a, const N: usize> StepControl<'a, N> {
         // A remainder below one per cent of a step is taken along.
         let last = time + self.length * 1.01 >= end;
         let trial_end = if last { end } else { time + self.length };
-        self.stride = if last { self.length } else { 0.0 };
+        let is_aimed = self.aim < trial_end;
+        let trial_end = if is_aimed { self.aim } else { trial_end };
+        self.stride = if last || is_aimed { self.length } else { 0.0 };
         self.length = trial_end - time;
         if self.length.is_nan() || self.length <= LEAST_LENGTH * end {
             return Err(IntegrationError::StepTooSmall { time });
         }
         Ok(trial_end)
+    }
+
+    /// Goes on where the system or the state changes: with a first step, where that changes the rates much.
+    pub(super) fn restart<F: StepBounds<N>>(
+        &mut self,
+        system: &F,
+        state: &[f64; N],
+        slope: &[f64; N],
+        slope_before: &[f64; N],
+    ) {
+        let jump = self.size(&from_fn(|i| slope[i] - slope_before[i]), state, state);
+        if jump > JUMP * self.size(slope, state, state) {
+            self.statistics.evaluations += 1;
+            self.length = self.length.min(self.first_step(system, state, slope));
+            self.growth = GREATEST_GROWTH;
+            self.predictive = PredictiveControl::START;
+        }
+        self.stiffness = Stiffness::default();
+    }
+
+    /// The next step ends at a time, s, if it would go beyond.
+    pub(super) fn aim_at(&mut self, time: f64) {
+        self.aim = self.aim.min(time);
+    }
+
+    /// After a rejected step of a length, s, the next one is to end at a corner of the rates that lies within, in a time, s: the steps beyond may
+    /// be as long as that was.
+    pub(super) fn end_at_corner(&mut self, length: f64, time: f64) {
+        if time < AT_END * length {
+            self.length = length;
+            self.aim_at(self.time + time);
+            let CornerSteps { left, granted } = &mut self.corners;
+            *left = *granted;
+            *granted = (*granted * 2).min(MOST_CORNER_STEPS);
+        }
+    }
+
+    /// Whether the next step, before its first trial, is to end at a corner, if there is one within.
+    pub(super) fn expects_corner(&self) -> bool {
+        self.corners.left > 0 && self.growth > 1.0
+    }
+
+    /// The next step ends at the next corner, in a time, s, if that is within.
+    pub(super) fn go_to_corner(&mut self, time: f64) {
+        if time < AT_END * self.length {
+            self.aim_at(self.time + time);
+            self.corners.left -= 1;
+        }
     }
 
     /// Keeps the next step within a length.
@@ -102,7 +206,10 @@ impl<'a, const N: usize> StepControl<'a, N> {
         if *restrained >= *patience {
             *restrained = 0;
             *is_found = longest_implicit() > ADVANTAGE * longest;
-            self.length *= if *is_found { ADVANTAGE } else { 1.0 };
+            if *is_found {
+                self.length *= FIRST_IMPLICIT;
+                self.predictive = PredictiveControl { only_grew: false, ..PredictiveControl::START };
+            }
         }
     }
 
@@ -122,7 +229,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
         let error = self.error(start, trial);
         self.statistics.evaluations += step::TRIAL_EVALUATIONS;
         // The eighth root.
-        let accepted = self.decide(error, SAFETY / error.sqrt().sqrt().sqrt());
+        let accepted = self.decide(error, 1.0 / error.sqrt().sqrt().sqrt());
         self.statistics.evaluations += usize::from(accepted);
         accepted
     }
@@ -130,7 +237,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
     /// Whether the error of the implicit trial step is small enough; proposes the length of the next one.
     pub(super) fn accepts_implicit(&mut self, start: &[f64; N], trial: &radau::Trial<N>) -> bool {
         let error = self.size(&trial.error, start, &trial.end);
-        self.decide(error, SAFETY / error.sqrt().sqrt())
+        self.decide(error, 1.0 / error.sqrt().sqrt())
     }
 
     /// Whether an error, as a multiple of the tolerance, is small enough; `fitting`: how many times as long a step would have the tolerance as
@@ -139,10 +246,17 @@ impl<'a, const N: usize> StepControl<'a, N> {
         let accepted = error < 1.0;
         if accepted {
             self.statistics.steps += 1;
-            self.length = (self.length * self.growth.min(fitting).max(LEAST_GROWTH)).max(self.stride);
+            // A step that was cut short, and has hardly an error, says nothing about longer ones.
+            let is_significant = self.stride == 0.0 || error > SIGNIFICANT_ERROR_OF_CUT_STEPS;
+            let change = if is_significant { self.predictive.change(self.length, error, fitting) } else { 1.0 };
+            let growth = SAFETY * fitting * change;
+            let bounded = self.length * self.growth.min(growth).max(LEAST_GROWTH);
+            self.length = if is_significant && growth < self.growth { bounded } else { bounded.max(self.stride) };
             self.growth = GREATEST_GROWTH;
+            self.aim = f64::INFINITY;
+            self.error = error;
         } else {
-            self.reject(if error.is_finite() { fitting.max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK });
+            self.reject(if error.is_finite() { (SAFETY * fitting).max(LEAST_GROWTH) } else { NOT_FINITE_SHRINK });
         }
         accepted
     }
@@ -180,7 +294,11 @@ impl<'a, const N: usize> StepControl<'a, N> {
         self.length * fifth / denominator
     }
 
-    /// The length of the first step, from the sizes of the first and second derivative (Hairer, Nørsett, Wanner, section II.4).
+    /// The length of the first step, from the sizes of the first and second derivative: their ratio is the time in which the rates change, and
+    /// with all higher derivatives the error grows as if they went on like a geometric series.
+    ///
+    /// The usual estimate (Hairer, Nørsett, Wanner, section II.4) takes the first two for that of the order of the method, in seconds: for
+    /// flights it came hundreds of times too short.
     fn first_step<F: StepBounds<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
         let norm = |vector: &[f64; N]| {
             let size = |i: usize| state[i].abs().max(self.magnitudes[i]);
@@ -193,10 +311,12 @@ impl<'a, const N: usize> StepControl<'a, N> {
         let euler = from_fn(|i| state[i] + slope[i] * guess);
         let next_slope = system.derivative(self.time + guess, &euler);
         let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
-        let steepest = first.max(second);
-        let refined = if steepest > 1e-15 { (0.01 / steepest).powf(1.0 / ORDER) } else { guess };
+        // At least that in which the state changes by the tolerance: from rest, or near it, the rates change at once.
+        let time = (first / second).max(1.0 / second.sqrt());
+        let part = (first * time).powf(-1.0 / (ORDER + 1.0));
+        let refined = part.min(LONGEST_FIRST_STEP) * time;
         // Where the trial overflowed, the guess shrinks until a step is accepted.
-        if refined.is_finite() { refined.min(guess * 100.0) } else { guess }
+        if refined > 0.0 && refined.is_finite() { refined.min(guess * 100.0) } else { guess }
     }
 }
 
@@ -205,14 +325,31 @@ const SAFETY: f64 = 0.9;
 const LEAST_GROWTH: f64 = 1.0 / 3.0;
 const GREATEST_GROWTH: f64 = 6.0;
 const NOT_FINITE_SHRINK: f64 = 0.1;
+/// Bounds of the factor of predictive control.
+const LEAST_CHANGE: f64 = 0.5;
+const GREATEST_CHANGE: f64 = 1.3;
+/// The least error, as a multiple of the tolerance, that tells how long a step might be: smaller ones are near the rounding.
+const SIGNIFICANT_ERROR: f64 = 1e-4;
+/// The same of a step that was cut short.
+const SIGNIFICANT_ERROR_OF_CUT_STEPS: f64 = 1e-2;
+/// In parts of the time in which the rates change: where the tolerance is loose, the series says little.
+const LONGEST_FIRST_STEP: f64 = 0.1;
+/// A part of the rates of change; a jump by more makes a new start.
+const JUMP: f64 = 0.03;
+/// Up to this part of a step a corner of the rates is within it, and not at its end.
+const AT_END: f64 = 0.95;
+/// So many steps end at corners before one is tried across.
+const MOST_CORNER_STEPS: u32 = 8;
 pub(super) const NOT_CONVERGED_SHRINK: f64 = 0.3;
 /// How many times as long as a stable explicit step another has to be to count as much longer: an implicit one costs as much as one and a half.
 const ADVANTAGE: f64 = 3.0;
+/// How many times as long as the explicit step before the first implicit one is tried.
+const FIRST_IMPLICIT: f64 = 5.0;
 /// Implicit steps go on as long as they are so many times as long as explicit ones.
 const LEAST_ADVANTAGE: f64 = 2.0;
 /// Accuracy that asks for steps of this part of the longest one does so for the sake of stability: there the estimate of the error grows.
 const NEARLY: f64 = 0.75;
 /// Explicit steps that are restrained before implicit ones are tried: what decays fast is to be gone by then.
-const PATIENCE: usize = 4;
+const PATIENCE: usize = 3;
 /// A step shorter than this part of the end time would hardly ever get there, and at the end not advance the time at all.
 const LEAST_LENGTH: f64 = 1e-18;

@@ -53,6 +53,11 @@ impl<const K: usize> Cubics<K> {
         &self.axis.range
     }
 
+    /// The abscissae between the first and the last, at which the second derivatives jump.
+    pub fn inner(&self) -> &[f64] {
+        self.axis.inner()
+    }
+
     /// The slopes at the first and the last entry.
     pub fn end_slopes(&self) -> [[f64; K]; 2] {
         self.ends.map(|ends| ends.map(|end| end.slope))

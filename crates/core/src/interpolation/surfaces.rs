@@ -88,6 +88,11 @@ impl Surfaces {
         [&self.first.range, &self.second.range]
     }
 
+    /// The entries of both arguments between the first and the last, at which the second derivatives jump.
+    pub fn inner(&self) -> [&[f64]; 2] {
+        [self.first.inner(), self.second.inner()]
+    }
+
     /// The functions by the formulas of a segment of each argument; outside they stay as they are at the ends.
     #[inline(always)]
     pub fn at<S: Scalar>(&self, segments: [usize; 2], arguments: [S; 2], hints: &[Hint; 2]) -> [S; 2] {

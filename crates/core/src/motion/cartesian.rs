@@ -3,7 +3,7 @@
 use num_dual::DualSVec64;
 
 use super::state::coordinates;
-use super::{Forces, Formulation, Singularity, State};
+use super::{Forces, Formulation, Singularity, State, StateRate};
 use crate::coordinates::PlanetFixed;
 use crate::integrate::{StepBounds, System, jacobian};
 use crate::scalar::{Over, Scalar};
@@ -64,6 +64,10 @@ where
 
     fn longest_implicit_step(&self, time: f64, numbers: &[f64; N]) -> f64 {
         self.0.longest_implicit_step(time, &Self::state(numbers))
+    }
+
+    fn time_to_corner(&self, time: f64, numbers: &[f64; N], derivative: &[f64; N], least: f64) -> f64 {
+        self.0.time_to_corner(&StateRate::of::<Self, N>(time, numbers, derivative), least)
     }
 
     fn jacobian(&self, time: f64, numbers: &[f64; N]) -> [[f64; N]; N] {

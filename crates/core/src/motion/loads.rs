@@ -1,8 +1,11 @@
 //! What acts on the vehicle at an instant, and what an event may wait for.
 
+use nalgebra::Vector3;
+
 use super::directions::{Directions, lift_fade_over_cosine};
 use super::{Flow, Forces, Local, Parameters, State, Switch};
 use crate::atmosphere::{Atmosphere, AtmosphereSample};
+use crate::control::Command;
 use crate::event::Quantity;
 use crate::heating::{HeatFlux, Stagnation};
 use crate::planet::Pull;
@@ -139,6 +142,21 @@ impl<P: Scalar> Forces<P> {
     }
 }
 
+impl<P: Scalar> Forces<P> {
+    /// The air at a place of an altitude, m, as far as the atmosphere knows it.
+    #[inline(always)]
+    pub(super) fn air_of<S: Over<P>>(&self, time: S, position: &Vector3<S>, altitude: S) -> AtmosphereSample<S> {
+        let sample = match &self.models.atmosphere {
+            Atmosphere::Nrlmsise00(model) => model.sample(self.models.planet.shape.semi_axes(), time, position),
+            by_altitude => by_altitude.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere),
+        };
+        // By the law of gases, denser air of the same temperature presses harder.
+        let factor = self.parameters.density;
+        let pressure = sample.pressure.map(|pressure| pressure * factor);
+        AtmosphereSample { density: sample.density * factor, pressure, ..sample }
+    }
+}
+
 impl Forces {
     /// The heating of the nose, where it is asked for.
     pub(crate) fn heating(&self) -> Option<&Stagnation> {
@@ -147,26 +165,17 @@ impl Forces {
 
     /// The angles at which the vehicle flies in a state: σ and α, rad.
     pub fn angles(&self, time: f64, state: &State<f64>) -> [f64; 2] {
+        if let ([Command::Constant(bank_angle), Command::Constant(angle_of_attack)], false) =
+            (self.models.control.commands(), self.by_axis)
+        {
+            return [bank_angle + self.parameters.bank_angle, *angle_of_attack];
+        }
         let flow = self.flow_where_mach_matters(time, state);
         [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
     }
 
     /// The air in a state, as far as the atmosphere knows it.
     pub fn air_at(&self, time: f64, state: &State<f64>) -> AtmosphereSample<f64> {
-        let shape = &self.models.planet.shape;
-        let sample = match &self.models.atmosphere {
-            Atmosphere::Nrlmsise00(model) => model.sample(shape.semi_axes(), time, &state.position),
-            by_altitude => {
-                let altitude = shape.altitude(&state.position);
-                by_altitude.sample(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere)
-            }
-        };
-        // By the law of gases, denser air of the same temperature presses harder.
-        let factor = self.parameters.density;
-        AtmosphereSample {
-            density: sample.density * factor,
-            pressure: sample.pressure.map(|pressure| pressure * factor),
-            ..sample
-        }
+        self.air_of(time, &state.position, self.models.planet.shape.altitude(&state.position))
     }
 }

@@ -4,9 +4,12 @@
 //! mode therefore stays what it is, and every formula goes on beyond its own segment; the flight looks for the instant at which it
 //! leaves the segment, ends the step there, and [enters the next mode](super::Forces::enter_mode_of).
 
+use std::cell::OnceCell;
+
+use nalgebra::Vector3;
 use num_dual::Dual64;
 
-use super::{Flow, Forces, Local, State};
+use super::{Flow, Forces, Local, State, StateRate};
 use crate::atmosphere::Atmosphere;
 use crate::control::Against;
 use crate::heating::Radiative;
@@ -71,6 +74,10 @@ pub(crate) enum SwitchQuantity {
     LoadExcess,
 }
 
+/// A set of switches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct SwitchSet(u16);
+
 /// Of every switch the segment of its formula that holds: 0 before the first boundary, 1 after it, and so on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ModelMode([usize; Switch::ALL.len()]);
@@ -97,6 +104,29 @@ impl Switch {
     /// Whether it is the first and the last entry of a table.
     fn is_of_table(self) -> bool {
         matches!(self, Self::Wind | Self::Mach | Self::TableAngleOfAttack)
+    }
+}
+
+impl SwitchSet {
+    /// Those of which a condition holds.
+    pub(super) fn of(holds: impl Fn(Switch) -> bool) -> Self {
+        Switch::ALL.into_iter().filter(|switch| holds(*switch)).fold(Self::default(), Self::with)
+    }
+
+    /// The same with one more.
+    #[must_use]
+    pub(super) fn with(self, switch: Switch) -> Self {
+        Self(self.0 | 1 << switch as u16)
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// One by one, in the order of [`Switch::ALL`].
+    pub(crate) fn iter(self) -> impl DoubleEndedIterator<Item = Switch> {
+        Switch::ALL.into_iter().filter(move |switch| self.0 & 1 << *switch as u16 != 0)
     }
 }
 
@@ -136,7 +166,12 @@ impl<P: Scalar> Forces<P> {
 
     /// Whether any of the models changes its formula anywhere.
     pub fn has_switches(&self) -> bool {
-        self.has_switches
+        !self.switches.is_empty()
+    }
+
+    /// The switches that the models have.
+    pub(crate) fn switches(&self) -> SwitchSet {
+        self.switches
     }
 
     /// By what a switch turns, and at which values, ascending; none where it never does.
@@ -178,17 +213,35 @@ impl<P: Scalar> Forces<P> {
         boundaries.filter(|(_, boundaries)| !boundaries.is_empty())
     }
 
+    /// At which values of the quantity of a switch, ascending, its formula has a corner within a segment: a second derivative that jumps, at
+    /// the entries of a table.
+    fn corners(&self, switch: Switch) -> &[f64] {
+        match (switch, &self.models.atmosphere, &self.models.wind, &self.models.aerodynamics) {
+            (Switch::Atmosphere, Atmosphere::Table(table), ..) => table.inner(),
+            (Switch::Wind, _, Wind::Table(table), _) => table.inner(),
+            (Switch::Mach, .., Aerodynamics::MachTable(table)) => table.inner(),
+            (Switch::Mach, .., Aerodynamics::AlphaMachTable(table)) => table.inner()[1],
+            (Switch::TableAngleOfAttack, .., Aerodynamics::AlphaMachTable(table)) => table.inner()[0],
+            _ => &[],
+        }
+    }
+
     /// Of every switch the quantity in a state; zero where there is none.
     pub(crate) fn readings<S: Over<P>>(&self, time: S, state: &State<S>) -> [S; Switch::ALL.len()] {
-        if !self.has_switches {
-            return [S::zero(); Switch::ALL.len()];
+        let mut readings = [S::zero(); Switch::ALL.len()];
+        let flow = OnceCell::new();
+        for switch in self.switches.iter() {
+            if let Some((quantity, _)) = self.boundaries(switch) {
+                readings[switch as usize] = self.quantity_of(quantity, self.clock(switch, time), time, state, &flow);
+            }
         }
-        let flow = self.flow_where_mach_matters(time, state);
-        Switch::ALL.map(|switch| match self.boundaries(switch) {
-            Some((SwitchQuantity::LoadExcess, _)) => self.load_excess(time, state, &self.flow::<false, _>(time, state)),
-            Some((quantity, _)) => self.quantity_of(quantity, [time, self.clock(switch, time)], &flow),
-            None => S::zero(),
-        })
+        readings
+    }
+
+    /// The quantity of one switch in a state; zero where there is none.
+    pub(crate) fn reading<S: Over<P>>(&self, switch: Switch, time: S, state: &State<S>) -> S {
+        let of = |(quantity, _)| self.quantity_of(quantity, self.clock(switch, time), time, state, &OnceCell::new());
+        self.boundaries(switch).map_or(S::zero(), of)
     }
 
     /// The air that meets the vehicle, as far as angles and coefficients depend on it: without its density, where that takes a look-up of its own.
@@ -200,14 +253,24 @@ impl<P: Scalar> Forces<P> {
         self.flow_in::<false, _>(time, Local { air: None, potential }, state)
     }
 
-    /// A quantity at a time, s, and by a clock that may lag behind it.
-    fn quantity_of<S: Over<P>>(&self, quantity: SwitchQuantity, [time, clock]: [S; 2], flow: &Flow<S>) -> S {
+    /// A quantity in a state, at a time, s, and by a clock that may lag behind it. `flow` is made for what asks for more than time and place.
+    fn quantity_of<S: Over<P>>(
+        &self,
+        quantity: SwitchQuantity,
+        clock: S,
+        time: S,
+        state: &State<S>,
+        flow: &OnceCell<Flow<S>>,
+    ) -> S {
+        let flow = || flow.get_or_init(|| self.flow_where_mach_matters(time, state));
         match quantity {
-            SwitchQuantity::Along(against) => flow.quantity(against, clock),
-            SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow),
-            SwitchQuantity::AirSpeed => flow.directions.speed,
+            SwitchQuantity::Along(Against::Time) => clock,
+            SwitchQuantity::Along(Against::Altitude) => self.models.planet.shape.altitude(&state.position),
+            SwitchQuantity::Along(against) => flow().quantity(against, clock),
+            SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow()),
+            SwitchQuantity::AirSpeed => flow().directions.speed,
             // It needs the density of the air.
-            SwitchQuantity::LoadExcess => S::zero(),
+            SwitchQuantity::LoadExcess => self.load_excess(time, state, &self.flow::<false, _>(time, state)),
         }
     }
 }
@@ -265,7 +328,7 @@ impl Forces {
             let boundary = self.boundary_towards(*switch, next)?;
             Some((readings[*switch as usize] - boundary).abs() / quantity.resolution())
         };
-        let turning = Switch::ALL.into_iter().filter_map(|switch| Some((switch, distance(&switch)?)));
+        let turning = self.switches.iter().filter_map(|switch| Some((switch, distance(&switch)?)));
         turning.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(switch, _)| switch)
     }
 
@@ -277,12 +340,30 @@ impl Forces {
         (now != then).then_some(*boundary)
     }
 
+    /// The time to the next corner of a formula that is not one of its boundaries, and not nearer than `least`, s, as the present motion has it.
+    pub(crate) fn time_to_corner(&self, now: &StateRate, least: f64) -> f64 {
+        if self.switches.iter().all(|switch| self.corners(switch).is_empty()) {
+            return f64::INFINITY;
+        }
+        let readings = self.readings(now.time, &now.state);
+        let ahead = self.switches.iter().flat_map(|switch| {
+            let now = readings[switch as usize];
+            self.corners(switch).iter().map(move |corner| (switch, *corner, (corner - now.re) / now.eps))
+        });
+        let later = ahead.filter(|(.., time)| *time >= least && time.is_finite());
+        let Some((switch, corner, time)) = later.min_by(|a, b| a.2.total_cmp(&b.2)) else { return f64::INFINITY };
+        // Once more from there, since the rates change on the way.
+        let there = self.reading(switch, now.time + time, &now.state.later(time));
+        let better = time + (corner - there.re) / there.eps;
+        if (better - time).abs() < 0.5 * time { better } else { time }
+    }
+
     /// Enters the mode of a state and of where it moves next.
     ///
     /// # Errors
     /// When there is none: on either side of a boundary the motion leads back across it.
     pub(crate) fn enter_mode_of(&mut self, time: f64, state: &State<f64>) -> Result<(), Chatter> {
-        if !self.has_switches {
+        if self.switches.is_empty() {
             return Ok(());
         }
         let mut turned = Switch::Atmosphere;
@@ -291,7 +372,7 @@ impl Forces {
             let mode = self.mode_ahead(time, state);
             // The schedules come last, and first in what is said to switch.
             let turns = |switch: &Switch| mode.of(*switch) != self.mode.of(*switch);
-            let Some(switch) = Switch::ALL.into_iter().rfind(turns) else { return Ok(()) };
+            let Some(switch) = self.switches.iter().rfind(turns) else { return Ok(()) };
             (turned, self.mode) = (switch, mode);
         }
         Err(Chatter(turned))
@@ -299,7 +380,19 @@ impl Forces {
 
     /// The mode to which the forces of the present one lead.
     fn mode_ahead(&self, time: f64, state: &State<f64>) -> ModelMode {
-        let (acceleration, mass_rate, _) = self.acceleration_and_rates(time, state);
+        let by_place = |switch| {
+            matches!(
+                self.boundaries(switch),
+                None | Some((SwitchQuantity::Along(Against::Time | Against::Altitude), _))
+            )
+        };
+        // Altitudes move with the velocity, whatever the forces are.
+        let (acceleration, mass_rate) = if self.switches.iter().all(by_place) {
+            (Vector3::zeros(), 0.0)
+        } else {
+            let (acceleration, mass_rate, _) = self.acceleration_and_rates(time, state);
+            (acceleration, mass_rate)
+        };
         let moving = State {
             position: state.position.zip_map(&state.velocity, Dual64::new),
             velocity: state.velocity.zip_map(&acceleration, Dual64::new),
@@ -307,15 +400,17 @@ impl Forces {
             heat_load: None,
         };
         let readings = self.readings(Dual64::new(time, 1.0), &moving);
-        ModelMode(Switch::ALL.map(|switch| {
-            let Some((quantity, boundaries)) = self.boundaries(switch) else { return 0 };
+        let mut mode = ModelMode::default();
+        for switch in self.switches.iter() {
+            let Some((quantity, boundaries)) = self.boundaries(switch) else { continue };
             let now = readings[switch as usize];
             let resolution = quantity.resolution();
             // What stays at the end of a table is still in it.
             let leaves = now.eps > 0.0 || !switch.is_of_table();
             let ahead =
                 now.re + if now.eps < 0.0 || !leaves && now.re > boundaries[0] { -resolution } else { resolution };
-            boundaries.partition_point(|boundary| *boundary <= ahead)
-        }))
+            mode.0[switch as usize] = boundaries.partition_point(|boundary| *boundary <= ahead);
+        }
+        mode
     }
 }

@@ -1,6 +1,7 @@
 //! The state of a vehicle, with names, and as the numbers that are integrated.
 
 use nalgebra::Vector3;
+use num_dual::Dual64;
 
 use crate::coordinates::PlanetFixed;
 use crate::scalar::Scalar;
@@ -50,6 +51,22 @@ impl<S: Scalar> State<S> {
     pub(super) fn of<const N: usize>(PlanetFixed { position, velocity }: PlanetFixed<S>, numbers: &[S; N]) -> Self {
         let [mass, heat_load] = [MASS, HEAT_LOAD].map(|index| numbers.get(index).copied());
         Self { position, velocity, mass, heat_load }
+    }
+}
+
+impl State<Dual64> {
+    /// What it will be a time later, s, if the acceleration stays: the numbers change by their rates.
+    pub(super) fn later(&self, time: f64) -> Self {
+        let evenly = |number: Dual64| Dual64::new(number.re + number.eps * time, number.eps);
+        let fallen = |place: Dual64, velocity: Dual64| {
+            Dual64::new(place.re + (velocity.re + 0.5 * velocity.eps * time) * time, evenly(velocity).re)
+        };
+        Self {
+            position: self.position.zip_map(&self.velocity, fallen),
+            velocity: self.velocity.map(evenly),
+            mass: self.mass.map(evenly),
+            heat_load: self.heat_load.map(evenly),
+        }
     }
 }
 

@@ -4,7 +4,6 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::directions::{Directions, lift_fade_over_cosine, turned};
 use super::{Flow, Forces, State, Switch};
-use crate::atmosphere::Atmosphere;
 use crate::control::Command;
 use crate::coordinates::PlanetFixed;
 use crate::planet::Planet;
@@ -152,7 +151,11 @@ impl<P: Scalar> Forces<P> {
         let elapsed = time + -burn.since;
         let in_vacuum = (elapsed * burn.acceleration_rate + burn.acceleration) * ratio;
         let back_pressure = match burn.exit_area_over_mass {
-            Some(area) => ratio * area * self.pressure(time, state, flow),
+            // Zero where the atmosphere has no pressure.
+            Some(area) => {
+                let pressure = self.air_of(time, &state.position, flow.altitude).pressure;
+                ratio * area * pressure.unwrap_or_else(S::zero)
+            }
             None => S::zero(),
         };
         let direction = self.axis(time, state, flow);
@@ -184,16 +187,6 @@ impl<P: Scalar> Forces<P> {
                 -((elapsed * burn.mass_flow_rate + burn.mass_flow) * throttle)
             }
         }
-    }
-
-    /// The pressure of the air, Pa; zero where the atmosphere has none.
-    fn pressure<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> S {
-        let sample = match &self.models.atmosphere {
-            Atmosphere::Nrlmsise00(model) => model.sample(self.models.planet.shape.semi_axes(), time, &state.position),
-            by_altitude => by_altitude.sample(self.mode.of(Switch::Atmosphere), flow.altitude, &self.cache.atmosphere),
-        };
-        // By the law of gases, denser air of the same temperature presses harder.
-        sample.pressure.map_or(S::zero(), |pressure| pressure * self.parameters.density)
     }
 
     /// Where the axis of the vehicle points, of length 1; shorter within [`LIFT_FADE_ANGLE`](super::LIFT_FADE_ANGLE) of the vertical, where
@@ -246,6 +239,9 @@ impl Forces {
     /// The magnitude of the thrust, N, and the share of the thrust of all engines in vacuum that the load limit leaves, of a vehicle of a
     /// mass, kg.
     pub(crate) fn thrust_and_throttle(&self, time: f64, state: &State<f64>, mass: f64) -> [f64; 2] {
+        if self.burn.is_none() {
+            return [0.0; 2];
+        }
         let flow = self.flow::<false, _>(time, state);
         let aerodynamic = self.aerodynamic::<false, _>(time, &flow);
         let push = self.push(time, state, &flow, &aerodynamic);

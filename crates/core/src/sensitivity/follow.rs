@@ -185,8 +185,8 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
     fn followed(&self, step: &AnyStep, length: f64) -> [Dual<W>; N] {
         let time = step.start_time();
         if step.is_implicit() {
-            let jacobian = self.motion.jacobian(time, &self.state.map(|number| number.re));
-            follow_implicitly(&self.motion, &jacobian, &self.state, time, length)
+            let jacobian = |time, state: &_| self.motion.jacobian(time, state);
+            follow_implicitly(&self.motion, jacobian, &self.state, time, length)
         } else {
             follow(&self.motion, &self.state, time, length)
         }
@@ -445,9 +445,9 @@ impl<'a, F: FormulationIn<Dual<W>, N>, const N: usize, const W: usize> Follower<
         let values = F::state(&self.state.map(|number| number.re));
         let Some(switch) = plain.first_to_turn(next, time, &values) else { return Dual::from(0.0) };
         let moving = self.moving(time, rates);
-        let rate = plain.readings(Dual64::new(time, 1.0), &moving.state)[switch as usize].eps;
-        let reading = self.forces.dual.readings(Dual::from(time), &F::state(&self.state))[switch as usize];
-        let reading = self.forces.with_models(reading, |forces| forces.readings(time, &values)[switch as usize]);
+        let rate = plain.reading(switch, Dual64::new(time, 1.0), &moving.state).eps;
+        let reading = self.forces.dual.reading(switch, Dual::from(time), &F::state(&self.state));
+        let reading = self.forces.with_models(reading, |forces| forces.reading(switch, time, &values));
         delay(reading - self.forces.boundary(switch, next), rate)
     }
 

@@ -94,6 +94,31 @@ pub fn slopes(
     Ok(slopes)
 }
 
+/// The point of a flight at a moment: at that of a peak, or of what is lowest, where `value` is; none where the flight has no such moment.
+///
+/// # Errors
+/// When the flag is raised, at which it looks before every step of a search for a peak.
+pub fn point_at(
+    flight: &Trajectory,
+    at: Moment,
+    value: &dyn Fn(&FlightPoint) -> Option<f64>,
+    interrupt: &dyn Interrupt,
+) -> Result<Option<FlightPoint>, SimulationError> {
+    let of_point = |point: &FlightPoint, _: Option<Moved>| value(point);
+    let output = Output { at, value: &of_point, turn: None, takes_ground_distance: false };
+    let at_end = |step: usize, part: f64| Some(flight.inside(flight.flown.steps.get(step)?).point(part));
+    Ok(match place(flight, &output, interrupt)? {
+        None => None,
+        Some(Place::Start) => Some(flight.initial()),
+        Some(Place::End) => Some(flight.last()),
+        Some(Place::Inside { time, .. }) => Some(flight.at(time)),
+        Some(Place::StepStart(step)) => at_end(step, 0.0),
+        Some(Place::StepEnd(step)) => at_end(step, 1.0),
+        Some(Place::Before(record)) => flight.events().nth(record).map(|event| event.before),
+        Some(Place::After(record)) => flight.events().nth(record).map(|event| event.after),
+    })
+}
+
 /// Adds the slopes by some variations, of which the first has this place among all.
 fn add_slopes(
     flight: &Trajectory,

@@ -1,5 +1,6 @@
 //! The conditions of the events and of the stops of a case.
 
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
 use num_dual::Dual64;
@@ -7,8 +8,8 @@ use num_dual::Dual64;
 use super::detector::{AT_END, Detector};
 use super::step_view::StepView;
 use crate::coordinates::GreatCircle;
-use crate::event::{Condition, Direction, Quantity, Trigger};
-use crate::integrate::event;
+use crate::event::{Condition, Direction, Effect, Quantity, Trigger};
+use crate::integrate::event::{self, PredictedCrossing};
 use crate::motion::{Forces, Formulation, StateRate};
 use crate::scenario::Case;
 use crate::trajectory::Termination;
@@ -20,6 +21,10 @@ pub(super) struct ConditionDetector {
     watched: Vec<Quantity>,
     /// Of these, with their rates, at the end of the last step; the others are zero.
     last: Readings,
+    /// The same at its start.
+    before: Readings,
+    /// The length of that step, s; none where it tells nothing of what comes.
+    length_before: Option<f64>,
     /// The initial great circle, from which downrange and ground range are measured.
     track: GreatCircle<Dual64>,
     /// The circumference of the sphere on which they are, m.
@@ -39,6 +44,8 @@ struct PendingCondition {
     /// What it waits for, and the delay after it, s.
     waits_for: Option<(Cause, f64)>,
     action: Action,
+    /// Whether the flight goes on otherwise, or ends: not so at an event that is only noted.
+    changes_flight: bool,
     status: Status,
 }
 
@@ -75,7 +82,7 @@ enum Status {
 }
 
 impl PendingCondition {
-    fn new(trigger: Trigger, action: Action) -> Self {
+    fn new(trigger: Trigger, action: Action, changes_flight: bool) -> Self {
         let at = |value| Condition { quantity: Quantity::Time, value, direction: Direction::Rising };
         let (condition, waits_for, status) = match trigger {
             Trigger::Condition(condition) => (condition, None, Status::Armed),
@@ -84,7 +91,7 @@ impl PendingCondition {
                 (at(f64::INFINITY), Some((Cause::Burnout(part), delay)), Status::Dormant)
             }
         };
-        Self { condition, margin: 0.0, waits_for, action, status }
+        Self { condition, margin: 0.0, waits_for, action, changes_flight, status }
     }
 
     /// How far the quantity is before the value.
@@ -113,13 +120,17 @@ impl ConditionDetector {
             .chain(stops)
             .chain(ceiling)
             .chain(burnout)
-            .map(|(trigger, action)| PendingCondition::new(trigger, action))
+            .map(|(trigger, action)| {
+                let is_noted = matches!(action, Action::Event(event) if case.events[event].then == Effect::default());
+                PendingCondition::new(trigger, action, !is_noted)
+            })
             .collect();
         let waits = |quantity: &Quantity| all.iter().any(|pending| pending.condition.quantity == *quantity);
         let watched = Quantity::ALL.into_iter().filter(waits).collect();
         let track = GreatCircle::of(case.track_start()).map(Dual64::from);
         let around = TAU * case.planet.equatorial_radius();
-        let mut conditions = Self { all, watched, last: [Dual64::from(0.0); Quantity::ALL.len()], track, around };
+        let none = [Dual64::from(0.0); Quantity::ALL.len()];
+        let mut conditions = Self { all, watched, last: none, before: none, length_before: None, track, around };
         conditions.last = conditions.read(forces, start);
         conditions
     }
@@ -142,18 +153,9 @@ impl ConditionDetector {
 
     /// Every quantity for which a condition waits.
     fn read(&self, forces: &Forces, moment: &StateRate) -> Readings {
-        self.gather(|quantity| self.quantity(quantity, forces, moment))
-    }
-
-    /// The same at the end of a step.
-    fn read_end<F: Formulation<N>, const N: usize>(&self, step: &StepView<F, N>) -> Readings {
-        self.gather(|quantity| self.at_end(quantity, step))
-    }
-
-    fn gather(&self, reading: impl Fn(Quantity) -> Dual64) -> Readings {
         let mut quantities = self.last;
         for watched in &self.watched {
-            quantities[*watched as usize] = reading(*watched);
+            quantities[*watched as usize] = self.quantity(*watched, forces, moment);
         }
         quantities
     }
@@ -285,6 +287,11 @@ impl ConditionDetector {
         })
     }
 
+    /// What was read before the present instant tells nothing of what comes.
+    pub(super) fn forget(&mut self) {
+        self.length_before = None;
+    }
+
     /// Whether any condition is met at the present instant.
     pub(super) fn is_due(&self) -> bool {
         self.all.iter().any(|pending| pending.status == Status::Due)
@@ -309,7 +316,7 @@ impl Detector for ConditionDetector {
         let mut first: Option<(f64, usize)> = None;
         let length = step.length();
         let forces = step.motion.forces();
-        let nearest = self.nearest();
+        let nearest = OnceCell::new();
         for (index, pending) in self.armed() {
             let quantity = pending.condition.quantity;
             if quantity == Quantity::Time {
@@ -317,12 +324,16 @@ impl Detector for ConditionDetector {
             }
             let start = pending.before_among(&self.last);
             let end = pending.before(self.at_end(quantity, step));
+            if !event::may_cross(start, end, length, forces.has_tables()) {
+                continue;
+            }
             // A quantity comes to the nearest value before it comes to those beyond.
+            let nearest = nearest.get_or_init(|| self.nearest());
             let is_behind = nearest[quantity as usize][pending.condition.direction as usize] != index;
             if start.re > 0.0 && is_behind {
                 continue;
             }
-            let inside = |part| self.ahead(index, forces, &step.inside(part));
+            let inside = |part| self.ahead(index, forces, &step.on_dense_output(part));
             if let Some(part) = event::first_crossing(start, end, length, forces.has_tables(), inside)
                 && first.is_none_or(|(least, _)| part < least)
             {
@@ -337,16 +348,34 @@ impl Detector for ConditionDetector {
         pending.before(self.quantity(pending.condition.quantity, forces, now))
     }
 
+    fn predict(&self, _: &Forces, within: f64) -> Option<PredictedCrossing> {
+        // What is only noted leaves the steps as they are.
+        let decides =
+            |pending: &PendingCondition| pending.changes_flight && pending.condition.quantity != Quantity::Time;
+        let waiting = self.armed().filter(|(_, pending)| decides(pending));
+        let predicted = waiting.filter_map(|(_, pending)| {
+            let before = self.length_before.map(|length| (length, pending.before_among(&self.before)));
+            event::predicted_fall(pending.before_among(&self.last), before, within)
+        });
+        PredictedCrossing::first(predicted)
+    }
+
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
         if self.is_empty() {
             return;
         }
-        let next = self.read_end(step);
-        let last = std::mem::replace(&mut self.last, next);
-        for pending in self.all.iter_mut().filter(|pending| pending.status == Status::Armed) {
-            let [last, next] = [last, next].map(|quantities| pending.before_among(&quantities).re);
-            // Where conditions are met together, one of them cuts the step.
-            if last > 0.0 && next <= 0.0 {
+        for place in 0..self.watched.len() {
+            let quantity = self.watched[place];
+            let next = self.at_end(quantity, step);
+            self.before[quantity as usize] = std::mem::replace(&mut self.last[quantity as usize], next);
+        }
+        self.length_before = Some(step.length());
+        let Self { all, before, last, .. } = self;
+        for pending in all.iter_mut().filter(|pending| pending.status == Status::Armed) {
+            let [last, next] = [&*before, &*last].map(|quantities| pending.before_among(quantities).re);
+            // Where conditions are met together, one of them cuts the step, and the others are on their values to rounding.
+            let reached = if step.is_cut() { pending.condition.resolution() } else { 0.0 };
+            if last > reached && next <= reached {
                 pending.status = Status::Due;
             }
             // Once well on the near side, it is met on the value itself.

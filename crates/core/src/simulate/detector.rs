@@ -3,6 +3,7 @@
 use num_dual::Dual64;
 
 use super::step_view::StepView;
+use crate::integrate::event::PredictedCrossing;
 use crate::integrate::{Integrator, Step};
 use crate::motion::{Forces, Formulation, StateRate};
 
@@ -19,12 +20,16 @@ pub(super) trait Detector {
     /// A function of the flight with its rate per second: positive before the place, zero on it.
     fn ahead(&self, located: Self::Located, forces: &Forces, now: &StateRate) -> Dual64;
 
+    /// When it expects its first place, if that may be within a time, s.
+    fn predict(&self, forces: &Forces, within: f64) -> Option<PredictedCrossing>;
+
     /// Keeps what it reads at the end of a step.
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>);
 }
 
 /// Cuts a step at the first place that a detector locates in it; returns which one, and adds to the evaluations that looking inside
-/// has cost. A place at the end of a step that is cut already does not cut it again.
+/// has cost. Where the dense output is good enough, as near the end of a step that was aimed at the place, it ends there; elsewhere its beginning is
+/// repeated. A place at the end of a step that is cut already does not cut it again.
 pub(super) fn cut_at_first<D: Detector, F: Formulation<N>, const N: usize>(
     step: &mut StepView<'_, F, N>,
     detector: &D,
@@ -32,7 +37,14 @@ pub(super) fn cut_at_first<D: Detector, F: Formulation<N>, const N: usize>(
     evaluations: &mut usize,
 ) -> Option<D::Located> {
     let (part, located) = detector.locate(step).filter(|(part, _)| !step.is_cut() || *part < AT_END)?;
+    let is_whole = !step.is_cut();
+    let beginning =
+        is_whole.then(|| integrator.end_inside(step.motion, &step.step, step.interpolant(), part)).flatten();
     *evaluations += step.evaluations();
+    if let Some(beginning) = beginning {
+        step.replace(beginning);
+        return Some(located);
+    }
     let forces = step.motion.forces();
     let ahead = |now: &StateRate| detector.ahead(located, forces, now);
     let shorter = cut_at(integrator, step.motion, &step.step, step.step.time(part), ahead);

@@ -11,6 +11,7 @@ use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boun
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
 use crate::event::{Effect, Separation, ThrustCommand, Tilt};
+use crate::integrate::event::PredictedCrossing;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{self, Chatter, Formulation, MASS, Singularity, State, StateRate};
@@ -29,6 +30,8 @@ pub(super) struct Flight<'a, F, const N: usize> {
     phase: Phase,
     time: f64,
     state: [f64; N],
+    /// The rates of change of the state, where they were computed after the last step: a restart needs them once more.
+    rates: Option<[f64; N]>,
     /// Of the motion, to look inside steps and ahead of them.
     evaluations: usize,
     pub(super) log: FlightLog,
@@ -77,6 +80,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             phase,
             time,
             state,
+            rates: None,
             evaluations: 0,
             log,
         })
@@ -120,9 +124,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// the time is met, where the propellant is spent, or where a canopy begins to fill or is full.
     pub(super) fn horizon(&self) -> f64 {
         let mut end = self.scenario.case().stop.time;
-        if self.motion.forces().has_switches() {
-            end = end.min(next_boundary_in_time(self.motion.forces()));
-        }
+        end = end.min(next_boundary_in_time(self.motion.forces()));
         if !self.conditions.is_empty() {
             end = end.min(self.conditions.next_time());
         }
@@ -181,7 +183,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             (None, None, None) => {}
         }
         let may_change = is_cut || halted || self.conditions.is_due() || self.time >= horizon;
-        if may_change { self.apply_changes(crossing, ending, false) } else { Ok(None) }
+        let end = if may_change { self.apply_changes(crossing, ending, false)? } else { None };
+        if end.is_none() {
+            self.look_ahead();
+        }
+        Ok(end)
     }
 
     /// Applies the changes at the end of a step: events, burnout, inflations and the mode of the models; the integration restarts there.
@@ -210,13 +216,40 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if halts(&self.motion, self.time, &self.state) {
             return Err(self.no_direction(self.time));
         }
-        self.integrator.restart(&self.motion, self.time, self.state);
+        match self.rates.take().filter(|_| eventless) {
+            Some(rates) => self.integrator.restart_with(&self.motion, self.time, self.state, rates),
+            None => self.integrator.restart(&self.motion, self.time, self.state),
+        }
         let start = StateRate::of::<F, N>(self.time, &self.state, self.integrator.derivative());
         let boundaries = ModelBoundaryDetector::new(self.motion.forces(), &start);
-        let before = std::mem::replace(&mut self.model_boundaries, boundaries);
+        let before = self.model_boundaries;
+        self.model_boundaries = if eventless { boundaries.going_on(&before) } else { boundaries };
+        if !eventless {
+            self.conditions.forget();
+            self.stop_altitude.forget();
+        }
         match crossing.filter(|crossing| eventless && crossing.is_undone(&before, &boundaries, self.motion.forces())) {
             Some(BoundaryCrossing { switch, .. }) => Err(SimulationError::Chatter { time: self.time, switch }),
             None => Ok(None),
+        }
+    }
+
+    /// Ends the next step a little beyond the first place at which a detector expects to cut it: the rest of the step would be flown for nothing,
+    /// formulas are not followed far beyond their segments, and so near the end of a step the dense output is as exact as the step.
+    fn look_ahead(&mut self) {
+        let Self { motion, integrator, stop_altitude, model_boundaries, conditions, .. } = self;
+        let (forces, length) = (motion.forces(), integrator.proposed_length());
+        let predicted = [
+            stop_altitude.predict(forces, length),
+            model_boundaries.predict(forces, length),
+            conditions.predict(forces, length),
+        ];
+        if let Some(PredictedCrossing { time, uncertainty }) = PredictedCrossing::first(predicted.into_iter().flatten())
+        {
+            let way = time + AIM_BEYOND * time + 0.5 * uncertainty.min(GREATEST_UNCERTAINTY * time);
+            if way < length {
+                integrator.aim_at(integrator.time() + way.max(LEAST_WAY * length));
+            }
         }
     }
 
@@ -285,6 +318,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         self.evaluations += 1;
         let now = StateRate::of::<F, N>(self.time, &self.state, &derivative);
         self.conditions.detect_jumps(self.motion.forces(), &now);
+        self.rates = Some(derivative);
     }
 
     /// Finds the conditions that are met at the present instant by a quantity that is on the value and moves on.
@@ -521,3 +555,9 @@ const NEARLY_AT_REST: f64 = 1e-4;
 const NOTHING: f64 = 1e-12;
 /// An integration that fails where no more than this part of the mass is left fails because of it.
 const NEARLY_NOTHING: f64 = 1e-2;
+/// By this part of the way to the place a step ends beyond it,
+const AIM_BEYOND: f64 = 1e-3;
+/// and by half of the uncertainty, which counts up to this part of the way.
+const GREATEST_UNCERTAINTY: f64 = 0.1;
+/// The least part of its length to which a step is cut for the sake of such a place.
+const LEAST_WAY: f64 = 0.1;

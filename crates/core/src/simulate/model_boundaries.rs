@@ -5,7 +5,7 @@ use num_dual::Dual64;
 use super::detector::Detector;
 use super::step_view::StepView;
 use crate::control::Against;
-use crate::integrate::event;
+use crate::integrate::event::{self, PredictedCrossing};
 use crate::motion::{Forces, Formulation, StateRate, Switch, SwitchQuantity};
 
 /// Detects where a flight leaves the segments on which the present formulas hold.
@@ -15,6 +15,8 @@ use crate::motion::{Forces, Formulation, StateRate, Switch, SwitchQuantity};
 pub(super) struct ModelBoundaryDetector {
     /// The quantities on which formulas depend, with their rates, at the end of the last step; zero where there is none.
     readings: [Dual64; Switch::ALL.len()],
+    /// The same at its start, with its length, s.
+    before: Option<(f64, [Dual64; Switch::ALL.len()])>,
 }
 
 /// Where a flight leaves a segment.
@@ -61,7 +63,12 @@ impl BoundaryCrossing {
 
 impl ModelBoundaryDetector {
     pub(super) fn new(forces: &Forces, start: &StateRate) -> Self {
-        Self { readings: read(forces, start) }
+        Self { readings: read(forces, start), before: None }
+    }
+
+    /// Those after a change that leaves their rates as they were before.
+    pub(super) fn going_on(self, before: &Self) -> Self {
+        Self { before: before.before, ..self }
     }
 }
 
@@ -73,12 +80,12 @@ impl Detector for ModelBoundaryDetector {
         if !forces.has_switches() {
             return None;
         }
-        let ends = *step.readings_at_end();
+        let ends = step.readings_at_end();
         let mut first: Option<(f64, BoundaryCrossing)> = None;
-        for switch in Switch::ALL {
-            let [start, end] = [self.readings, ends].map(|readings| readings[switch as usize]);
+        for switch in forces.switches().iter() {
+            let [start, end] = [&self.readings, ends].map(|readings| readings[switch as usize]);
             for boundary in boundaries_around(forces, switch).into_iter().flatten() {
-                let inside = |part| boundary.inside(read(forces, &step.inside(part))[switch as usize]);
+                let inside = |part| boundary.inside(read_inside(switch, step, part));
                 let [start, end] = [start, end].map(|quantity| boundary.inside(quantity));
                 let length = step.length();
                 if event::seems_to_fall(start, end, length)
@@ -93,11 +100,23 @@ impl Detector for ModelBoundaryDetector {
     }
 
     fn ahead(&self, crossing: BoundaryCrossing, forces: &Forces, now: &StateRate) -> Dual64 {
-        crossing.boundary.inside(read(forces, now)[crossing.switch as usize])
+        crossing.boundary.inside(read_one(forces, crossing.switch, now))
+    }
+
+    fn predict(&self, forces: &Forces, within: f64) -> Option<PredictedCrossing> {
+        let around = forces.switches().iter().flat_map(|switch| {
+            boundaries_around(forces, switch).into_iter().flatten().filter_map(move |boundary| {
+                let of = |readings: &[Dual64; Switch::ALL.len()]| boundary.inside(readings[switch as usize]);
+                let before = self.before.as_ref().map(|(length, readings)| (*length, of(readings)));
+                event::predicted_fall(of(&self.readings), before, within)
+            })
+        });
+        PredictedCrossing::first(around)
     }
 
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
         if step.motion.forces().has_switches() {
+            self.before = Some((step.length(), self.readings));
             self.readings = *step.readings_at_end();
         }
     }
@@ -109,7 +128,7 @@ pub(super) fn next_boundary_in_time(forces: &Forces) -> f64 {
         Some((SwitchQuantity::Along(Against::Time), corners)) => corners.get(forces.mode().of(switch)).copied(),
         _ => None,
     };
-    Switch::ALL.into_iter().filter_map(corner).fold(f64::INFINITY, f64::min)
+    forces.switches().iter().filter_map(corner).fold(f64::INFINITY, f64::min)
 }
 
 /// The ends of the segment on which a formula holds.
@@ -128,4 +147,20 @@ fn boundaries_around(forces: &Forces, switch: Switch) -> [Option<Boundary>; 2] {
 /// The quantity of every switch.
 fn read(forces: &Forces, now: &StateRate) -> [Dual64; Switch::ALL.len()] {
     forces.readings(now.time, &now.state)
+}
+
+/// The quantity of one inside a step.
+fn read_inside<F: Formulation<N>, const N: usize>(switch: Switch, step: &StepView<F, N>, part: f64) -> Dual64 {
+    let forces = step.motion.forces();
+    match forces.boundaries(switch) {
+        Some((SwitchQuantity::Along(Against::Altitude), _)) => {
+            forces.planet().shape.altitude(&step.position_inside(part))
+        }
+        _ => read_one(forces, switch, &step.inside(part)),
+    }
+}
+
+/// The quantity of one.
+fn read_one(forces: &Forces, switch: Switch, now: &StateRate) -> Dual64 {
+    forces.reading(switch, now.time, &now.state)
 }

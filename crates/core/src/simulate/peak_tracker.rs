@@ -69,7 +69,7 @@ impl PeakTracker {
         let end = view.end();
         let loads = finite(*view.loads_at_end(), end.time.re)?;
         let start = std::mem::replace(&mut self.loads, loads);
-        let inside = |part| loads_at(forces, &view.inside(part));
+        let inside = |part| loads_at(forces, &view.on_dense_output(part));
         let time = |part| view.step.time(part);
         let ends = [(0.0, start), (1.0, loads)];
         // Between the entries of tables a quantity may turn more than once in a step.

@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
+use nalgebra::Vector3;
 use num_dual::Dual64;
 
 use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Formulation, Loads, StateRate, Switch};
+use crate::motion::{Formulation, Loads, State, StateRate, Switch};
 
 /// An accepted step.
 pub(super) struct StepView<'a, F, const N: usize> {
@@ -60,11 +61,30 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
         StateRate::of::<F, N>(self.step.start_time, &self.step.start, &self.step.start_derivative)
     }
 
-    /// The state at the given part of the step, moving along the flow.
+    /// The state inside.
+    pub(super) fn interpolant(&self) -> &Interpolant<N> {
+        self.interpolant.get_or_init(|| self.step.interpolant(self.motion))
+    }
+
+    /// The state at the given part of the step, moving along the flow: with its own velocity, which is right from rest as well, where the
+    /// rate of the dense output is a rounding.
     pub(super) fn inside(&self, part: f64) -> StateRate {
-        let time = self.step.time(part);
-        let state = self.interpolant.get_or_init(|| self.step.interpolant(self.motion)).state(part);
-        StateRate::of::<F, N>(time, &state, &self.motion.derivative(time, &state))
+        let mut now = self.on_dense_output(part);
+        now.state.position.zip_apply(&now.state.velocity, |place, velocity| place.eps = velocity.re);
+        now
+    }
+
+    /// The position of [`inside`](Self::inside) alone, m.
+    pub(super) fn position_inside(&self, part: f64) -> Vector3<Dual64> {
+        let State { position, velocity, .. } = F::state(&self.interpolant().state(part));
+        position.zip_map(&velocity, Dual64::new)
+    }
+
+    /// The state at the given part of the step, moving along the dense output: what rises and falls by these rates does so along the
+    /// states that the dense output has, whatever its error.
+    pub(super) fn on_dense_output(&self, part: f64) -> StateRate {
+        let interpolant = self.interpolant();
+        StateRate::of::<F, N>(self.step.time(part), &interpolant.state(part), &interpolant.rate(part))
     }
 
     /// The state at the end, moving along the flow.

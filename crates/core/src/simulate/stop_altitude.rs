@@ -1,10 +1,11 @@
 //! The end of the flight where the altitude falls to the stop altitude.
 
+use nalgebra::Vector3;
 use num_dual::Dual64;
 
 use super::detector::Detector;
 use super::step_view::StepView;
-use crate::integrate::event;
+use crate::integrate::event::{self, PredictedCrossing};
 use crate::motion::{Forces, Formulation, StateRate};
 use crate::planet::Shape;
 
@@ -16,11 +17,13 @@ pub(super) struct StopAltitudeDetector {
     stop_altitude: f64,
     /// The height above the stop altitude, with its rate, at the end of the last step.
     height: Dual64,
+    /// The same at its start, with its length, s.
+    before: Option<(f64, Dual64)>,
 }
 
 impl StopAltitudeDetector {
     pub(super) fn new(shape: Shape, stop_altitude: f64, start: &StateRate) -> Self {
-        let mut detector = Self { shape, stop_altitude, height: Dual64::from(0.0) };
+        let mut detector = Self { shape, stop_altitude, height: Dual64::from(0.0), before: None };
         detector.go_to(start);
         detector
     }
@@ -33,11 +36,21 @@ impl StopAltitudeDetector {
     /// Keeps the height at an instant.
     pub(super) fn go_to(&mut self, now: &StateRate) {
         self.height = self.height_at(now);
+        self.before = None;
+    }
+
+    /// What was read before the present instant tells nothing of what comes.
+    pub(super) fn forget(&mut self) {
+        self.before = None;
     }
 
     /// The height above the stop altitude, m, with its rate.
     pub(super) fn height_at(&self, now: &StateRate) -> Dual64 {
-        self.shape.altitude(&now.state.position) - self.stop_altitude
+        self.height_of(&now.state.position)
+    }
+
+    fn height_of(&self, position: &Vector3<Dual64>) -> Dual64 {
+        self.shape.altitude(position) - self.stop_altitude
     }
 }
 
@@ -47,7 +60,8 @@ impl Detector for StopAltitudeDetector {
     /// The first crossing downwards, a dip inside the step included.
     fn locate<F: Formulation<N>, const N: usize>(&self, step: &StepView<F, N>) -> Option<(f64, ())> {
         let end = self.height_at(&step.end());
-        let part = event::first_fall(self.height, end, step.length(), |part| self.height_at(&step.inside(part)))?;
+        let inside = |part| self.height_of(&step.position_inside(part));
+        let part = event::first_fall(self.height, end, step.length(), inside)?;
         Some((part, ()))
     }
 
@@ -55,7 +69,13 @@ impl Detector for StopAltitudeDetector {
         self.height_at(now)
     }
 
+    fn predict(&self, _: &Forces, within: f64) -> Option<PredictedCrossing> {
+        event::predicted_fall(self.height, self.before, within)
+    }
+
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
+        let before = (step.length(), self.height);
         self.go_to(&step.end());
+        self.before = Some(before);
     }
 }

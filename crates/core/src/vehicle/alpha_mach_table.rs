@@ -41,6 +41,11 @@ impl AlphaMachTable {
         self.coefficients.ranges()[1]
     }
 
+    /// The angles of attack, rad, and the Mach numbers between them.
+    pub fn inner(&self) -> [&[f64]; 2] {
+        self.coefficients.inner()
+    }
+
     /// Whether there is any lift.
     pub fn has_lift(&self) -> bool {
         self.has_lift

@@ -30,6 +30,11 @@ impl MachTable {
         self.coefficients.range()
     }
 
+    /// The Mach numbers between them.
+    pub fn inner(&self) -> &[f64] {
+        self.coefficients.inner()
+    }
+
     /// Whether there is any lift.
     pub fn has_lift(&self) -> bool {
         self.has_lift

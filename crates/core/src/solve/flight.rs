@@ -1,0 +1,98 @@
+//! A flight of a search, of which no more is kept than the search asks for.
+
+use crate::integrate::Statistics;
+use crate::interrupt::Interrupt;
+use crate::scenario::Scenario;
+use crate::sensitivity::{Moment, point_at};
+use crate::simulate::{SimulationError, extremes, simulate};
+use crate::trajectory::{Extremes, FlightPoint, Peaks, Termination, Trajectory};
+
+/// What a search asks of its flights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Extent {
+    /// Their starts, ends, events and peaks.
+    Extremes,
+    /// Their states at any time, and what is measured along the ground track.
+    Whole,
+}
+
+/// A finished flight.
+#[derive(Clone, Debug)]
+pub enum SearchFlight {
+    /// Its extremes.
+    Extremes(Extremes),
+    /// All of it.
+    Whole(Trajectory),
+}
+
+impl SearchFlight {
+    /// Flies a scenario.
+    ///
+    /// # Errors
+    /// Those of [`simulate`].
+    pub fn fly(scenario: &Scenario, extent: Extent, interrupt: &dyn Interrupt) -> Result<Self, SimulationError> {
+        match extent {
+            Extent::Extremes => extremes(scenario, interrupt).map(Self::Extremes),
+            Extent::Whole => simulate(scenario, interrupt).map(Self::Whole),
+        }
+    }
+
+    /// How the flight ended.
+    pub fn termination(&self) -> Termination {
+        match self {
+            Self::Extremes(flight) => flight.termination(),
+            Self::Whole(flight) => flight.termination(),
+        }
+    }
+
+    /// What the integration cost.
+    pub fn statistics(&self) -> Statistics {
+        match self {
+            Self::Extremes(flight) => flight.statistics(),
+            Self::Whole(flight) => flight.statistics(),
+        }
+    }
+
+    /// The greatest values over the flight.
+    pub fn peaks(&self) -> &Peaks {
+        match self {
+            Self::Extremes(flight) => flight.peaks(),
+            Self::Whole(flight) => flight.peaks(),
+        }
+    }
+
+    /// How far along the initial great circle the flight ended, within half a turn either way, and how far to the right of it, m on the sphere
+    /// with the equatorial radius; none where the flight starts vertically or at rest.
+    pub fn range_of_end(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Extremes(flight) => flight.range_of_end(),
+            Self::Whole(flight) => flight.range_of_end(),
+        }
+    }
+
+    /// The point at a moment: at that of a peak, or of what is lowest, where `value` is; none where the flight has no such moment, and of
+    /// extremes none at a time, at a peak and at what is lowest.
+    ///
+    /// # Errors
+    /// When the flag is raised.
+    pub fn point(
+        &self,
+        at: Moment,
+        value: &dyn Fn(&FlightPoint) -> Option<f64>,
+        interrupt: &dyn Interrupt,
+    ) -> Result<Option<FlightPoint>, SimulationError> {
+        let flight = match self {
+            Self::Extremes(flight) => flight,
+            Self::Whole(flight) => return point_at(flight, at, value, interrupt),
+        };
+        Ok(match at {
+            Moment::Start => Some(flight.initial()),
+            Moment::End => Some(flight.last()),
+            Moment::Event { event, after } => {
+                let happened = flight.events().find(|point| point.event == event);
+                happened.map(|point| if after { point.after } else { point.before })
+            }
+            Moment::Time(_) | Moment::Peak | Moment::Lowest => None,
+        })
+    }
+}
