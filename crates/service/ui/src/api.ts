@@ -1,7 +1,37 @@
 import type { components } from './generated/api';
 
 type Schemas = components['schemas'];
-export type Case = Schemas['SimulateRequest'];
+export type Goal = Schemas['Goal'];
+export type VariedNumber = Schemas['VariedNumber'];
+export type TargetRequest = Schemas['TargetRequest'];
+export type Target = Schemas['TargetResponse'];
+export type CorridorRequest = Schemas['CorridorRequest'];
+export type Limit = CorridorRequest['limits'][number];
+export type Corridor = Schemas['CorridorResponse'];
+export type FootprintRequest = Schemas['FootprintRequest'];
+export type Footprint = Schemas['FootprintResponse'];
+/** The accuracy of a footprint, m, and the flights that it may take, where they are not the defaults. */
+export interface FootprintOptions {
+  resolution?: number;
+  flights?: number;
+}
+
+/** What the page asks of a flight, beside the case: one link has both. */
+export interface Asked {
+  /** The numbers that are free. */
+  vary?: VariedNumber[];
+  /** What is to be achieved. */
+  achieve?: Goal[];
+  /** The limits of a corridor or a footprint that are not goals. */
+  limits?: Limit[];
+  /** Whether the ground that flights reach is asked for; `false` where the fields of a footprint are there and it is not. */
+  footprint?: boolean | FootprintOptions;
+  /** The pointers of the numbers that have a slider; those that matter, where there is no list. */
+  sliders?: string[];
+}
+
+/** A case, and what is asked of it. */
+export type Case = Schemas['SimulateRequest'] & Asked;
 export type State = Schemas['State'];
 /** A state, or a launch. */
 export type InitialState = Schemas['InitialState'];
@@ -44,6 +74,21 @@ export function convert(body: unknown, signal?: AbortSignal): Promise<Conversion
 /** A closed-form theory beside the flight. */
 export function analytic(body: unknown, signal?: AbortSignal): Promise<Theory> {
   return post('analytic', body, signal);
+}
+
+/** Finds numbers of a case with which its flight achieves goals. */
+export function target(body: TargetRequest, signal?: AbortSignal): Promise<Target> {
+  return post('target', body, signal);
+}
+
+/** Finds the values of a number with which flights keep limits. */
+export function corridor(body: CorridorRequest, signal?: AbortSignal): Promise<Corridor> {
+  return post('corridor', body, signal);
+}
+
+/** Finds the ground that flights reach when numbers of a case vary. */
+export function footprint(body: FootprintRequest, signal?: AbortSignal): Promise<Footprint> {
+  return post('footprint', body, signal);
 }
 
 /** The sites that a case may name. */

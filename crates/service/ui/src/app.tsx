@@ -6,6 +6,8 @@ import { Bodies } from './bodies';
 import { Cards, Computing, Dispersions, Problems, Sensitivities, Warnings } from './cards';
 import { Compare, Pin, Theories } from './compare';
 import { open, opened, start } from './fly';
+import { startFootprints } from './footprint/live';
+import { AskForFootprint } from './footprint/panel';
 import { Form } from './form/form';
 import { whyNoCase } from './form/shape';
 import { future, past, recent, redo, undo } from './history';
@@ -14,6 +16,8 @@ import { Plots } from './plots/plots';
 import { Sliders } from './sliders';
 import { angleUnit, current, draft, isBusy, notice, waiting } from './store';
 import { Take } from './take';
+import { AskForTarget, isAsked, TargetPanel } from './target/panel';
+import { startSearches } from './target/solve';
 
 const NARROW = '(max-width: 899px)';
 
@@ -63,6 +67,8 @@ export function App() {
 /** Opens the case of the address, or else the first example, and flies from then on; a file may be dropped anywhere. */
 function begin(): () => void {
   start();
+  startSearches();
+  startFootprints();
   void opened().then(async (isOpen) => {
     if (!isOpen) open(structuredClone((await examples())[0]?.case as Case));
   });
@@ -162,7 +168,7 @@ function Header() {
   return (
     <header class="top">
       <h1>reentry</h1>
-      <p class="quiet tagline">Atmospheric entry simulator</p>
+      <p class="quiet tagline">Simulator of atmospheric entry and launch</p>
       <output class="quiet waiting" aria-live="polite">
         {waiting.value}
       </output>
@@ -313,21 +319,27 @@ function Open() {
 
 function FlightView() {
   const Maps = useLater(current.value !== null, () => import('./map/map'));
+  // Beside the target, where there is one, which is set on it.
+  const map = Maps ? <Maps key="map" /> : <p class="quiet map-space">Loading map …</p>;
   if (!current.value) return <p class="quiet">{isBusy.value ? 'Computing …' : 'No results yet.'}</p>;
   return (
     <>
       <div class="panel-head">
         <h2 class="title">{current.value.case.name ?? 'Flight'}</h2>
         <Pin />
+        <AskForTarget />
+        <AskForFootprint />
       </div>
       <Notes name={current.value.case.name} />
       <Cards />
       <Warnings />
       <Take />
-      <Bodies />
-      <Plots />
-      <Compare />
-      {Maps ? <Maps /> : <p class="quiet map-space">Loading map …</p>}
+      <TargetPanel key="target" />
+      {isAsked(draft.value) && map}
+      <Bodies key="bodies" />
+      <Plots key="plots" />
+      <Compare key="compare" />
+      {!isAsked(draft.value) && map}
       <Theories />
       <Sensitivities />
       <Dispersions />

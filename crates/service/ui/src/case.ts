@@ -1,9 +1,20 @@
 import schema from 'virtual:schema';
 import type { Case } from './api';
-import type { AngleUnit } from './quantities';
+import { type AngleUnit, type Name, QUANTITIES } from './quantities';
 
 /** Where in a case: names of fields, and places in lists. */
 export type Path = readonly (string | number)[];
+
+/** The path of a JSON pointer; what is a place in a list is known by the tree. */
+export function pathOf(tree: unknown, at: string): Path {
+  const parts = String(at)
+    .split('/')
+    .slice(1)
+    .map((part) => part.replaceAll('~1', '/').replaceAll('~0', '~'));
+  const path: (string | number)[] = [];
+  for (const part of parts) path.push(Array.isArray(get(tree, path)) && /^\d+$/.test(part) ? Number(part) : part);
+  return path;
+}
 
 /** The JSON pointer (RFC 6901) of a path, by which the service names a field. */
 export function pointer(path: Path): string {
@@ -42,6 +53,33 @@ export function tidied(tree: Case): Case {
   return Object.fromEntries(Object.entries(tree).filter(([name, part]) => needed.includes(name) || !isEmpty(part))) as Case;
 }
 
+/** A case without what is asked of it: what `/simulate` takes. */
+export function alone({ vary: _, achieve: __, limits: ___, sliders: ____, footprint: _____, ...flight }: Case): Case {
+  return flight;
+}
+
+/** A case of `/corridor` varies one number: here it is a list of one. */
+export function withList<T>(tree: T): T {
+  const vary = get(tree, ['vary']);
+  return vary === undefined || Array.isArray(vary) ? tree : set(tree, ['vary'], [vary]);
+}
+
+/** A case of a search as the page has it: what is free as a list, and the options of a footprint by themselves. */
+export function adopted<T extends Case>(tree: T): T {
+  const { resolution, search, ...others } = withList(tree) as T & { resolution?: unknown; search?: unknown };
+  const next = others as unknown as T;
+  const isOfCorridor = !Array.isArray(tree.vary) || (tree.limits ?? []).some((limit) => get(limit, ['with']) !== undefined);
+  const isAsking = [tree.limits, resolution, search].some((part) => part !== undefined);
+  if (tree.footprint !== undefined || tree.vary === undefined || tree.achieve !== undefined || !isAsking) return next;
+  if (isOfCorridor) return { ...next, footprint: false };
+  const flights = get(search, ['flights']);
+  const options = {
+    ...(typeof resolution === 'number' ? { resolution } : {}),
+    ...(typeof flights === 'number' ? { flights } : {}),
+  };
+  return { ...next, footprint: Object.keys(options).length > 0 ? options : true };
+}
+
 /** What was typed: a number, nothing, or the text itself, of which the service then says what is wrong. */
 export function typed(text: string): number | string | undefined {
   const trimmed = text.trim();
@@ -61,6 +99,19 @@ const ANGLES = new Set(
 export const ANGLE_QUANTITIES: ReadonlySet<unknown> = new Set(
   Object.entries(schema.Quantity?.['x-units'] ?? {}).flatMap(([quantity, unit]) => (unit === 'angle' ? [quantity] : [])),
 );
+
+/** Whether the number of a pointer is an angle. */
+export function isAngleAt(tree: unknown, at: string): boolean {
+  const path = pathOf(tree, at);
+  const name = path.at(-1);
+  if (name === 'falls_through' || name === 'rises_through') return ANGLE_QUANTITIES.has(get(tree, [...path.slice(0, -1), 'quantity']));
+  return path.some((part) => ANGLES.has(String(part))) && name !== 'at';
+}
+
+/** Whether a quantity of a condition or a column is an angle. */
+function isAngleQuantity(quantity: unknown): boolean {
+  return ANGLE_QUANTITIES.has(quantity) || (typeof quantity === 'string' && QUANTITIES[quantity as Name]?.angle === true);
+}
 
 /** An angle in another unit; what is no number stays as it is. */
 export function turned(value: unknown, from: AngleUnit, to: AngleUnit): unknown {
@@ -82,13 +133,16 @@ export function inUnit(tree: Case, unit: AngleUnit): Case {
     if (Array.isArray(value)) return value.map(scale);
     return unit === 'deg' ? legible(value, from, unit) : turned(value, from, unit);
   };
+  const ofQuantity = ['falls_through', 'rises_through', 'equals', 'at_least', 'at_most', 'between', 'tolerance'];
   const walk = (value: unknown): unknown => {
     if (Array.isArray(value)) return value.map(walk);
     if (typeof value !== 'object' || value === null) return value;
-    const ofAngle = 'quantity' in value && ANGLE_QUANTITIES.has(value.quantity);
+    const ofAngle =
+      ('quantity' in value && isAngleQuantity(value.quantity)) ||
+      ('pointer' in value && 'between' in value && isAngleAt(tree, String(value.pointer)));
     return Object.fromEntries(
       Object.entries(value).map(([name, inner]) => {
-        if (ofAngle && (name === 'falls_through' || name === 'rises_through')) return [name, scale(inner)];
+        if (ofAngle && ofQuantity.includes(name)) return [name, scale(inner)];
         if (!ANGLES.has(name)) return [name, walk(inner)];
         const isSchedule = typeof inner === 'object' && inner !== null && !Array.isArray(inner);
         return [name, isSchedule ? { ...inner, value: scale((inner as { value?: unknown }).value) } : scale(inner)];

@@ -1,6 +1,6 @@
 import { batch, effect } from '@preact/signals';
 import { type Answer, analytic, type Case, type Problem, ProblemError, type Solution, simulate, type Theory } from './api';
-import { tidied } from './case';
+import { adopted, alone, tidied } from './case';
 import { flightOf, isLaunched } from './flight';
 import { forget } from './form/held';
 import { begin, follow, keep, separate } from './history';
@@ -12,7 +12,7 @@ import { added, current, draft, isBusy, notice, pins, problem, solution, theory,
 /** At most so often, ms, a case that is being changed is flown; less often where the service asks for that. */
 const INTERVAL = { least: 30, most: 2000 };
 /** After so long without a change, ms, a case is at rest: it is flown with all its rows, and kept in the address. */
-const REST = 250;
+export const REST = 250;
 /** Rows in a plot are no more than this, as far as a flight's number of steps tells. */
 const ROWS = { moving: 240, resting: 2400 };
 const DENSEST = 8;
@@ -31,6 +31,7 @@ let address = '';
 /** From now on flies the case as it changes, sets the theory beside it, and keeps it in the address. */
 export function start(): void {
   let changed = Number.NEGATIVE_INFINITY;
+  let before: unknown[] = [];
   const rest = debounced(REST, () => {
     isMoving = false;
     if (isCoarse) want();
@@ -39,12 +40,16 @@ export function start(): void {
   follow();
   effect(() => {
     if (Object.keys(draft.value).length === 0) return;
-    void [solution.value, added.value];
+    rest();
+    // What is asked of a case changes nothing of its flight.
+    const parts = [...Object.values(alone(draft.value)), solution.value, added.value];
+    const isSame = parts.length === before.length && parts.every((part, index) => part === before[index]);
+    before = parts;
+    if (isSame) return;
     const now = performance.now();
     isMoving = now - changed < REST;
     changed = now;
     want();
-    rest();
   });
   effect(() => {
     document.title = draft.value.name ? `${draft.value.name} · reentry` : 'reentry';
@@ -88,7 +93,7 @@ export function open(tree: Case & { solution?: Solution }): void {
 
 /** Takes a case; one of `/analytic` with the theory that it asks for. What is under way for another is given up. */
 function take(tree: Case & { solution?: Solution }): void {
-  const { solution: asked, ...flight } = tree;
+  const { solution: asked, ...flight } = adopted(tree);
   keep(tidied(draft.peek()));
   begin(flight);
   forget();
@@ -136,7 +141,7 @@ async function flyOn(): Promise<void> {
     flying = new AbortController();
     const began = performance.now();
     try {
-      const show = await flown(tidied(draft.peek()), isMoving);
+      const show = await flown(alone(tidied(draft.peek())), isMoving);
       // The next is asked for while this one is drawn.
       setTimeout(show);
       failing = 0;
@@ -165,7 +170,7 @@ async function flyOn(): Promise<void> {
   isBusy.value = false;
 }
 
-const passed = (pause: number) => new Promise((resolve) => setTimeout(resolve, pause));
+export const passed = (pause: number) => new Promise((resolve) => setTimeout(resolve, pause));
 
 /** Flies a case, with the theory beside it; what shows them. */
 async function flown(tree: Case, moving: boolean): Promise<() => void> {
@@ -248,7 +253,7 @@ export async function completed(id: number): Promise<void> {
 }
 
 /** What went wrong, as a problem document, also where the service did not answer. */
-function problemOf(error: unknown): Problem {
+export function problemOf(error: unknown): Problem {
   if (error instanceof ProblemError) return error.problem;
   return { type: 'about:blank', title: 'No response', status: 0, detail: 'The service does not respond. Check that it is running.' };
 }
@@ -257,7 +262,7 @@ function problemOf(error: unknown): Problem {
 const isAway = ({ status }: Problem) => [0, 502, 504].includes(status);
 
 /** After how long, ms, the service is to be asked again; null where the case is at fault. */
-function retryOf(error: unknown): number | null {
+export function retryOf(error: unknown): number | null {
   const { status } = problemOf(error);
   if (status !== 503 && status !== 429 && !isAway({ status } as Problem)) return null;
   const asked = error instanceof ProblemError ? error.retryAfter : null;
@@ -265,7 +270,7 @@ function retryOf(error: unknown): number | null {
 }
 
 /** Calls when nothing was asked for so long. */
-function debounced(pause: number, call: () => void): () => void {
+export function debounced(pause: number, call: () => void): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   return () => {
     clearTimeout(timer);

@@ -1,7 +1,7 @@
 import { address, type Case } from './api';
 
-/** The case as JSON. */
-export function asJson(tree: Case): string {
+/** A case, or what is asked of it, as JSON. */
+export function asJson(tree: object): string {
   return JSON.stringify(tree, null, 2);
 }
 
@@ -11,9 +11,9 @@ export function fileName({ name }: Case): string {
   return words.replace(/^[_.-]+/, '').replace(/[_.-]+$/, '') || 'flight';
 }
 
-/** A command for a shell that flies the case. */
-export function asCurl(tree: Case): string {
-  return `curl '${address('simulate')}' -H 'content-type: application/json' -d '${asJson(tree).replaceAll("'", "'\\''")}'\n`;
+/** A command for a shell that flies the case, or sends what a search asks. */
+export function asCurl(tree: object, endpoint = 'simulate'): string {
+  return `curl '${address(endpoint)}' -H 'content-type: application/json' -d '${asJson(tree).replaceAll("'", "'\\''")}'\n`;
 }
 
 /** A program in Python, with `requests`, that flies the case. */

@@ -1,15 +1,20 @@
 import { useSignal } from '@preact/signals';
 import { type Case, download, ProblemError } from './api';
-import { set, tidied } from './case';
+import { alone, set, tidied } from './case';
 import { copied } from './clipboard';
+import { footprintRequest } from './footprint/request';
 import { toFragment } from './link';
 import { bodyIn, hasGlobe, modelOf, whyNoOem } from './planets';
 import { asCurl, asJson, asPython, fileName } from './snippets';
 import { draft } from './store';
+import { corridorRequest, targetRequest } from './target/request';
 
 const FORMATS = ['csv', 'json', 'geojson', 'kml', 'czml', 'oem'] as const;
 
-/** What a user takes along: the link, the case in three languages, the flight as a file. */
+/** The requests of searches that a case makes, each with its path. */
+const SEARCHES = { target: targetRequest, corridor: corridorRequest, footprint: footprintRequest };
+
+/** What a user takes along: the link, the case in three languages, what is searched for, the flight as a file. */
 export function Take() {
   const said = useSignal('');
   const say = (text: string) => {
@@ -23,11 +28,10 @@ export function Take() {
     const fragment = await toFragment(tidied(draft.value));
     await copy('Link', new URL(fragment, location.href).href);
   };
-  const save = async (format: (typeof FORMATS)[number]) => {
+  const save = async (path: string, body: object, ending: string, what: string) => {
     try {
-      const blob = await download(`simulate?format=${format}`, bodyFor(format));
-      saved(blob, `${fileName(draft.value)}.${format}`);
-      say(`${format.toUpperCase()} saved`);
+      saved(await download(path, body), `${fileName(draft.value)}.${ending}`);
+      say(`${what} saved`);
     } catch (error) {
       say(
         error instanceof ProblemError
@@ -36,6 +40,11 @@ export function Take() {
       );
     }
   };
+  const searches = Object.entries(SEARCHES).flatMap(([name, requestOf]) => {
+    const request = requestOf(draft.value);
+    return request ? [[name, request] as const] : [];
+  });
+  const footprint = footprintRequest(draft.value);
   const model = modelOf(draft.value);
   const without = FORMATS.filter((format) => !hasGlobe(format, model));
   const noOem = whyNoOem(draft.value);
@@ -47,27 +56,47 @@ export function Take() {
         <button type="button" onClick={() => void link()}>
           Link
         </button>
-        <button type="button" onClick={() => void copy('curl command', asCurl(tidied(draft.value)))}>
+        <button type="button" onClick={() => void copy('curl command', asCurl(alone(tidied(draft.value))))}>
           curl
         </button>
-        <button type="button" onClick={() => void copy('Case JSON', asJson(tidied(draft.value)))}>
+        <button type="button" onClick={() => void copy('Case JSON', asJson(alone(tidied(draft.value))))}>
           Case JSON
         </button>
-        <button type="button" onClick={() => void copy('Python program', asPython(tidied(draft.value)))}>
+        <button type="button" onClick={() => void copy('Python program', asPython(alone(tidied(draft.value))))}>
           Python
         </button>
       </div>
+      {searches.length > 0 && (
+        <div class="buttons">
+          <span class="quiet">Searches</span>
+          {searches.map(([name, request]) => (
+            <button key={name} type="button" onClick={() => void copy(`curl command of /${name}`, asCurl(request, name))}>
+              {`curl /${name}`}
+            </button>
+          ))}
+          {footprint && (
+            <button type="button" onClick={() => void save('footprint?format=geojson', footprint, 'footprint.geojson', 'Footprint')}>
+              Footprint GeoJSON
+            </button>
+          )}
+        </div>
+      )}
       <div class="buttons">
         <span class="quiet">Download</span>
         {FORMATS.map((format) => (
-          <button key={format} type="button" disabled={!isOffered(format)} onClick={() => void save(format)}>
+          <button
+            key={format}
+            type="button"
+            disabled={!isOffered(format)}
+            onClick={() => void save(`simulate?format=${format}`, bodyFor(format), format, nameOf(format))}
+          >
             {nameOf(format)}
           </button>
         ))}
         <button
           type="button"
           onClick={() => {
-            saved(new Blob([asJson(tidied(draft.value))], { type: 'application/json' }), `${fileName(draft.value)}.case.json`);
+            saved(new Blob([asJson(alone(tidied(draft.value)))], { type: 'application/json' }), `${fileName(draft.value)}.case.json`);
             say('Case file saved');
           }}
         >
@@ -92,7 +121,7 @@ const nameOf = (format: (typeof FORMATS)[number]) => (format === 'geojson' ? 'Ge
 
 /** The case for a format: a table, a map and a list of states have no place for what is said about a flight, and the last two have no columns. */
 function bodyFor(format: (typeof FORMATS)[number]): Case {
-  const tree = tidied(draft.value);
+  const tree = alone(tidied(draft.value));
   if (format === 'json') return tree;
   const { sensitivities: _, dispersions: __, verify: ___, ...flight } = tree;
   return format === 'csv' ? flight : tidied(set(flight, ['output', 'columns'], undefined));

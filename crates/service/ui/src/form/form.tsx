@@ -16,6 +16,7 @@ import { angles, Block, Faults, helpOf, idOf, inputOf, isAngle, isWithin, Line, 
 import { Parts } from './parts';
 import { LaunchPlace } from './place';
 import { settle } from './planet';
+import { Bounds, RoleChoice } from './role';
 import type { Property } from './schema';
 import { rename, retype } from './state';
 
@@ -116,6 +117,8 @@ function Item({ field, path, property, isBare = false }: ItemProps) {
           path={path}
           property={property}
           unit={field.kind === 'numbers' ? undefined : unitOf(field, path)}
+          role={field.kind === 'number' && <RoleChoice label={field.label} path={path} property={property} />}
+          below={field.kind === 'number' && <Bounds label={field.label} path={path} isAngle={isAngle(field, path)} />}
         >
           <Control field={field} path={path} property={property} />
         </Line>
@@ -491,7 +494,14 @@ function Choice({ fields, names, path, schema: of }: { fields: Fields; names: st
       </div>
     );
   return (
-    <Line label={label} path={[...path, name]} property={property} unit={unitOf(field, [...path, name])}>
+    <Line
+      label={label}
+      path={[...path, name]}
+      property={property}
+      unit={unitOf(field, [...path, name])}
+      role={field.kind === 'number' && <RoleChoice label={field.label} path={[...path, name]} property={property} />}
+      below={field.kind === 'number' && <Bounds label={field.label} path={[...path, name]} isAngle={isAngle(field, [...path, name])} />}
+    >
       <Control field={field} path={[...path, name]} property={property} name={field.label} />
     </Line>
   );
@@ -610,7 +620,13 @@ function Command({ label, path, property }: { label: string; path: Path; propert
         ) : (
           <Control field={{ kind: 'number', label, isAngle: true }} path={path} property={property} />
         )}
-        {!isSchedule && <span class="unit">{unitOf({ kind: 'number', label, isAngle: true })}</span>}
+        {!isSchedule && (
+          <span class="unit">
+            {unitOf({ kind: 'number', label, isAngle: true })}
+            <RoleChoice label={label} path={path} property={property ?? { default: 0 }} />
+          </span>
+        )}
+        {!isSchedule && <Bounds label={label} path={path} isAngle />}
         <Faults path={path} />
       </div>
       <label class="check">

@@ -76,23 +76,31 @@ export interface LineProps {
   path: Path;
   property?: Property | undefined;
   unit?: string | undefined;
+  /** What is done with a number, beside its unit. */
+  role?: ComponentChildren;
+  /** What stands below, over the whole width. */
+  below?: ComponentChildren;
   children: ComponentChildren;
 }
 
 /** A label, an input and its unit. */
-export function Line({ label, path, property, unit, children }: LineProps) {
+export function Line({ label, path, property, unit, role, below, children }: LineProps) {
   return (
     <div class="line" title={helpOf(property)}>
       {typeof label === 'string' ? <label for={idOf(path)}>{label}</label> : label}
       {children}
-      <span class="unit">{unit}</span>
+      <span class="unit">
+        {unit}
+        {role}
+      </span>
+      {below}
       <Faults path={path} isWhole />
     </div>
   );
 }
 
 /** A label above an input that takes the whole width. */
-export function Block({ label, path, property, children }: Omit<LineProps, 'unit'>) {
+export function Block({ label, path, property, children }: Omit<LineProps, 'unit' | 'role' | 'below'>) {
   return (
     <div class="block" title={helpOf(property)}>
       <label for={idOf(path)}>{label}</label>

@@ -1,4 +1,4 @@
-import { get, type Path, pointer } from '../case';
+import { get, type Path, pointer, withList } from '../case';
 import { type Field, type Fields, kindOf, SCHEDULE, SECTIONS, SINCE, SUTTON_GRAVES, THRUST } from './fields';
 
 /** The bytes that a case may have: the service takes no longer body, unless its settings say so. */
@@ -18,7 +18,7 @@ export function whyNoCase(value: unknown): string | null {
   if (missing.length > 0) return `${missing.join(' and ')} ${missing.length > 1 ? 'are' : 'is'} missing`;
   if (isDeeper(value, DEEPEST)) return `it is nested more than ${DEEPEST} levels deep`;
   if (new TextEncoder().encode(JSON.stringify(value)).length > LONGEST) return TOO_LONG;
-  const faults = ofObject(value, ASKED, []);
+  const faults = ofObject(withList(value), ASKED, []);
   const others = faults.length > TOLD ? `, and ${faults.length - TOLD} more` : '';
   return faults.length > 0 ? faults.slice(0, TOLD).join(', ') + others : null;
 }
@@ -28,8 +28,23 @@ export const TOO_LONG = 'it exceeds 1 MiB';
 
 const SINGLE: Field = { kind: 'text', label: '' };
 const ROW: Field = { kind: 'column', label: '', table: '' };
-const ASKED: Fields = { ...SECTIONS, solution: SINGLE };
+const OBJECT: Field = { kind: 'group', label: '', schema: '', fields: {} };
+const COUPLED: Field = { kind: 'group', label: '', schema: '', fields: { pointer: SINGLE, factor: SINGLE } };
+const FREE: Fields = { pointer: SINGLE, between: ROW, scale: SINGLE, also: listOf(COUPLED) };
+const ASKED: Fields = {
+  ...SECTIONS,
+  solution: SINGLE,
+  vary: listOf({ kind: 'group', label: '', schema: '', fields: FREE }),
+  achieve: listOf(OBJECT),
+  limits: listOf(OBJECT),
+  sliders: ROW,
+  footprint: { kind: 'flag', label: '', orObject: true },
+};
 const INERTIAL: Fields = { direction: ROW };
+
+function listOf(item: Field): Field {
+  return { kind: 'list', label: '', one: '', empty: {}, item };
+}
 
 function isObject(value: unknown): boolean {
   return typeof value === 'object' && value !== null && !Array.isArray(value);

@@ -9,8 +9,21 @@ const topology = land110 as unknown as Topology<{ land: GeometryCollection }>;
 /** The land of the Earth, of Natural Earth at 1:110 million. */
 export const LAND: GeoPermissibleObjects = feature(topology, topology.objects.land);
 
-/** Meridians and parallels so many degrees apart. */
-export const graticule = (step: number): GeoPermissibleObjects => geoGraticule().step([step, step])();
+/** So many steps of meridians and parallels are in sight, to either side of the middle of a map. */
+const IN_SIGHT = 25;
+
+/** Meridians and parallels so many degrees apart; of fine ones those around a place. */
+export function graticule(step: number, [longitude, latitude]: Place): GeoPermissibleObjects {
+  const lines = geoGraticule().step([step, step]);
+  if (step >= 10) return lines();
+  const [low, high] = [Math.max(latitude - IN_SIGHT * step, -90), Math.min(latitude + IN_SIGHT * step, 90)];
+  const widest = Math.cos((Math.max(-low, high) * Math.PI) / 180);
+  const half = Math.min((IN_SIGHT * step) / Math.max(widest, 1e-3), 180);
+  return lines.extent([
+    [longitude - half, low],
+    [longitude + half, high],
+  ])();
+}
 
 /** A place: longitude and latitude, degrees. */
 export type Place = [number, number];

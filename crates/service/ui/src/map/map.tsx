@@ -1,18 +1,31 @@
-import { computed, effect, useSignal } from '@preact/signals';
-import { type GeoProjection, geoAzimuthalEquidistant, geoCentroid, geoEquirectangular, geoOrthographic } from 'd3-geo';
+import { computed, effect, useComputed, useSignal } from '@preact/signals';
+import { type GeoProjection, geoAzimuthalEquidistant, geoCentroid, geoDistance, geoEquirectangular, geoOrthographic } from 'd3-geo';
 import { useEffect, useRef } from 'preact/hooks';
 import { copied } from '../clipboard';
 import { onTheme } from '../colours';
 import { kilometres, number } from '../figures';
 import { at, endOf, type Flight, type Run, withBodies } from '../flight';
+import { within } from '../footprint/ground';
+import { reached, sitesWithin } from '../footprint/live';
 import { isLaunch, launchAt, launchFrom } from '../form/launch';
-import { bodyIn, isEarth, isSameGround, planetOf } from '../planets';
+import { bodyIn, isEarth, isSameGround, modelOf, planetOf } from '../planets';
 import { type ListedSite, loadSites, sites, titleOfSite } from '../sites';
 import { current, cursor, draft, runs, tracks } from '../store';
+import { aimAt, isAiming, targetPlace } from '../target/place';
+import { found } from '../target/solve';
+import { drawnOf, extremeAt, type Fit, fitFootprint } from './footprint';
 import { extent, middleOf, type Place, placeAt, ramp, written } from './geography';
 import { siteAt } from './sites';
-import { drawScene, isPlaced, type Scene } from './view';
+import { drawScene, isPlaced, type Scene, seen } from './view';
 import './map.css';
+
+const footprint = computed(() => reached.value && drawnOf(reached.value));
+
+effect(() => {
+  const shown = reached.value;
+  const landing = shown && isEarth(modelOf(shown.asked)) ? sites.value.filter(({ kind }) => kind !== 'launch') : [];
+  sitesWithin.value = shown ? within(shown.answer.boundary, landing) : [];
+});
 
 const scene = computed<Scene>(() => {
   const instant = Date.parse(draft.value.epoch ?? '');
@@ -21,6 +34,9 @@ const scene = computed<Scene>(() => {
   return {
     runs: here,
     sites: isEarth(planet) ? sites.value : [],
+    found: found.value?.runs ?? [],
+    target: targetPlace(draft.value),
+    footprint: footprint.value && isSameGround(footprint.value.planet, planet) ? footprint.value : null,
     planet,
     time: cursor.value,
     epoch: Number.isNaN(instant) ? null : new Date(instant),
@@ -31,14 +47,27 @@ const scene = computed<Scene>(() => {
 export default function Maps() {
   const view = useSignal<View>('world');
   const isPicking = useSignal(false);
+  const hasTarget = useComputed(() => targetPlace(draft.value) !== null).value;
+  const hasFootprint = useComputed(() => (scene.value.footprint?.points.length ?? 0) > 0).value;
   useEffect(loadSites, []);
+  // On a map of the world a footprint is hardly seen.
+  useEffect(() => {
+    if (hasFootprint && view.peek() === 'world') view.value = 'footprint';
+    if (!hasFootprint && view.peek() === 'footprint') view.value = 'world';
+  }, [hasFootprint]);
   const run = current.value;
   if (!run) return null;
+  const views: View[] = [
+    'track',
+    ...(run.flight.bodies.length > 0 ? ['bodies' as const] : []),
+    ...(hasTarget ? ['target' as const] : []),
+    ...(hasFootprint ? ['footprint' as const] : []),
+  ];
   return (
     <section class="panel" aria-label="Ground track">
       <div class="panel-head">
         <h2>{`Ground track on ${bodyIn(planetOf(run))}`}</h2>
-        {(['track', ...(run.flight.bodies.length > 0 ? ['bodies' as const] : [])] as const).map((which) => (
+        {views.map((which) => (
           <button
             key={which}
             type="button"
@@ -65,7 +94,7 @@ export default function Maps() {
       </div>
       <div class="maps">
         <World
-          view={view.value === 'bodies' && run.flight.bodies.length === 0 ? 'track' : view.value}
+          view={view.value === 'world' || views.includes(view.value) ? view.value : 'track'}
           isPicking={isPicking.value && isLaunch()}
         />
         <Globe />
@@ -141,13 +170,27 @@ function summaryOf(run: Run): string {
 
 function World({ view, isPicking }: { view: View; isPicking: boolean }) {
   const pointed = useSignal<Pointed | null>(null);
+  const isDragged = useRef(false);
+  const wasDragged = useRef(false);
+  const sight = useRef<Sight | null>(null);
+  const fit = useRef<Fit | null>(null);
   const projection = useRef<GeoProjection>(geoEquirectangular());
-  const { canvas } = useCanvas(
+  const { canvas, redraw } = useCanvas(
     (ctx, width, height, shown) => {
       const flight = shown.runs[0]?.flight;
       // Around the middle of the track, where a pole is a place like others.
       const near = view !== 'world' ? geoAzimuthalEquidistant() : geoEquirectangular();
-      if (view !== 'world' && flight) {
+      if (view === 'target' && shown.target) {
+        // It stands still while the target is dragged.
+        if (!isDragged.current || !sight.current) sight.current = sightOf(shown.target.place, shown);
+        const { middle, radius } = sight.current;
+        near
+          .rotate([-middle[0], -middle[1]])
+          .translate([width / 2, height / 2])
+          .scale(Math.min(width, height) / 2 / ((radius * Math.PI) / 180));
+      } else if (view === 'footprint' && shown.footprint) {
+        fit.current = fitFootprint(near, shown.footprint.points, { width, height, before: fit.current });
+      } else if (view !== 'world' && flight) {
         const places = placesOf(shown.runs, view);
         const middle = view === 'bodies' ? geoCentroid({ type: 'MultiPoint', coordinates: places }) : middleOf(flight);
         const [longitude, latitude] = middle;
@@ -161,9 +204,10 @@ function World({ view, isPicking }: { view: View; isPicking: boolean }) {
           { type: 'MultiPoint', coordinates: [...places, ...around(middle)] },
         );
       } else near.fitSize([width, height], { type: 'Sphere' });
+      if (view !== 'world') clipToSight(near, width, height);
       projection.current = near;
       const degrees = width / ((near.scale() * Math.PI) / 180);
-      drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : degrees > 10 ? 2 : 0.5);
+      drawScene(ctx, near, shown, degrees > 150 ? 30 : degrees > 40 ? 10 : degrees > 10 ? 2 : degrees > 2 ? 0.5 : 0.1);
     },
     [view],
   );
@@ -172,35 +216,110 @@ function World({ view, isPicking }: { view: View; isPicking: boolean }) {
     <div class="world-frame">
       <canvas
         ref={canvas}
-        class={isPicking ? 'world picking' : 'world'}
+        class={isPicking || isAiming.value ? 'world picking' : 'world'}
         role="img"
         aria-label={
           run ? `${isEarth(planetOf(run)) ? 'World map' : `Map of ${bodyIn(planetOf(run))}`} with the track ${summaryOf(run)}` : 'World map'
         }
+        onTouchStart={(event) => {
+          // A finger on the target drags it, and not the page.
+          const { left, top } = event.currentTarget.getBoundingClientRect();
+          const touch = event.touches[0];
+          if (touch && isOnTarget(projection.current, [touch.clientX - left, touch.clientY - top])) event.preventDefault();
+        }}
+        onPointerDown={(event) => {
+          if (event.button !== 0 || !isOnTarget(projection.current, [event.offsetX, event.offsetY])) return;
+          event.currentTarget.setPointerCapture(event.pointerId);
+          isDragged.current = true;
+          wasDragged.current = true;
+        }}
+        onPointerUp={() => {
+          if (!isDragged.current) return;
+          isDragged.current = false;
+          redraw.current();
+        }}
         onPointerMove={(event) => {
+          if (isDragged.current) {
+            aim(projection.current, event, []);
+            return;
+          }
+          event.currentTarget.style.cursor = isOnTarget(projection.current, [event.offsetX, event.offsetY]) ? 'move' : '';
           look(projection.current, event);
           pointed.value = pointedAt(projection.current, event);
         }}
         onPointerLeave={() => {
           pointed.value = null;
         }}
-        onClick={(event) => pick(projection.current, event, isPicking)}
+        onClick={(event) => {
+          // The end of a drag is no click.
+          if (wasDragged.current) {
+            wasDragged.current = false;
+            return;
+          }
+          if (!isAiming.value) {
+            pick(projection.current, event, isPicking);
+            return;
+          }
+          aim(projection.current, event, scene.value.sites);
+          isAiming.value = false;
+        }}
       />
       {pointed.value && (
         <span
           class={pointed.value.isRight ? 'site-name left' : 'site-name'}
           style={{ left: `${pointed.value.x}px`, top: `${pointed.value.y}px` }}
         >
-          {titleOfSite(pointed.value.site)}
+          {pointed.value.text}
         </span>
       )}
     </div>
   );
 }
 
-/** A site at which the pointer is, and where that is on the map. */
+/** Leaves out what is far out of sight, of which a coast on a great scale has very many points. */
+function clipToSight(near: GeoProjection, width: number, height: number): void {
+  const [x, y] = near.translate();
+  const farthest = Math.hypot(Math.max(x, width - x), Math.max(y, height - y)) / near.scale();
+  const degrees = (1.1 * farthest * 180) / Math.PI;
+  if (degrees < 150) near.clipAngle(degrees);
+}
+
+/** What is seen around a target: a place, and so many degrees around it. */
+interface Sight {
+  middle: Place;
+  radius: number;
+}
+
+/** Around a target, so wide that the ends of the flights are seen, as far as they are not too far away. */
+function sightOf(middle: Place, { runs, found }: Scene): Sight {
+  const ends = [...runs.slice(0, 1), ...found].map(({ flight }) => placeAt(flight, flight.final.time ?? 0));
+  const farthest = Math.max(...ends.map((end) => (geoDistance(middle, end) * 180) / Math.PI), 0);
+  return { middle, radius: Math.min(Math.max(1.3 * farthest, SIGHT.least), SIGHT.most) };
+}
+
+/** Degrees, some 50 and 3300 km. */
+const SIGHT = { least: 0.5, most: 30 };
+
+/** How near, in pixels, a pointer is to the target that it means. */
+const NEAR = 14;
+
+function isOnTarget(projection: GeoProjection, [x, y]: [number, number]): boolean {
+  const point = scene.peek().target && seen(projection, scene.peek().target?.place as Place);
+  return point ? Math.hypot(point[0] - x, point[1] - y) < NEAR : false;
+}
+
+/** Puts the target where the pointer is, to a tenth of a pixel, or at the site there. */
+function aim(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, sites: ListedSite[]): void {
+  const site = siteAt(projection, sites, [offsetX, offsetY]);
+  const place = site ? ([site.longitude, site.geodetic_latitude] as Place) : projection.invert?.([offsetX, offsetY]);
+  if (!place) return;
+  const perPixel = 180 / Math.PI / projection.scale();
+  aimAt(place, site ? 5 : Math.min(Math.max(Math.ceil(-Math.log10(perPixel)) + 1, 2), 5));
+}
+
+/** What a mark of the map says at which the pointer is, and where that is. */
 interface Pointed {
-  site: ListedSite;
+  text: string;
   x: number;
   y: number;
   /** In the right half of the map, where a name has its room to the left. */
@@ -209,7 +328,9 @@ interface Pointed {
 
 function pointedAt(projection: GeoProjection, { offsetX, offsetY, currentTarget }: PointerEvent): Pointed | null {
   const site = siteAt(projection, scene.value.sites, [offsetX, offsetY]);
-  return site && { site, x: offsetX, y: offsetY, isRight: offsetX > (currentTarget as HTMLElement).clientWidth / 2 };
+  const extremes = extremeAt(projection, scene.value.footprint, [offsetX, offsetY]);
+  const text = [...extremes, ...(site ? [titleOfSite(site)] : [])].join('; ');
+  return text === '' ? null : { text, x: offsetX, y: offsetY, isRight: offsetX > (currentTarget as HTMLElement).clientWidth / 2 };
 }
 
 /** Puts a launch where the map was clicked: at a site or, where the reader is to pick a place, at any other. */
@@ -224,8 +345,8 @@ function pick(projection: GeoProjection, { offsetX, offsetY }: MouseEvent, isPic
 /** Degrees to some 100 m, which is finer than a pixel. */
 const rounded = (degrees: number) => Number(degrees.toFixed(3));
 
-/** What is in sight: the planet, the tracks, or those of the bodies with the vehicle until the last of them has left it. */
-type View = 'world' | 'track' | 'bodies';
+/** What is in sight: the planet, the tracks, those of the bodies with the vehicle until the last of them has left it, the place that is to be reached, the ground that flights reach. */
+type View = 'world' | 'track' | 'bodies' | 'target' | 'footprint';
 
 function placesOf(runs: Run[], view: View): Place[] {
   const own = runs.filter(({ id }) => id <= 0);

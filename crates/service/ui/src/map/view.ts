@@ -4,6 +4,8 @@ import { capital } from '../figures';
 import { isFlying, type Run } from '../flight';
 import { bodyIn, isEarth } from '../planets';
 import type { ListedSite } from '../sites';
+import type { TargetPlace } from '../target/place';
+import { type DrawnFootprint, drawExtremes, drawFootprint } from './footprint';
 import { belowSun, graticule, LAND, placeAt, ramp, stretches } from './geography';
 import { drawSites } from './sites';
 
@@ -13,6 +15,12 @@ export interface Scene {
   runs: Run[];
   /** What may be named as the place of a launch; on the Earth alone. */
   sites: ListedSite[];
+  /** The flights that a search has found. */
+  found: Run[];
+  /** The place that is to be reached. */
+  target: TargetPlace | null;
+  /** The ground that flights reach. */
+  footprint: DrawnFootprint | null;
   /** The model of the planet. */
   planet: string;
   /** The instant that is looked at, s. */
@@ -43,9 +51,11 @@ export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjecti
   const onEarth = isEarth(scene.planet);
   fill({ type: 'Sphere' }, colour(onEarth ? 'sea' : 'raised'));
   if (onEarth) fill(LAND, colour('land'));
-  stroke(graticule(step), colour(onEarth ? 'line' : 'line-strong'), onEarth ? 0.6 : 0.4);
+  const [lambda, phi] = projection.rotate();
+  stroke(graticule(step, [-lambda, -phi]), colour(onEarth ? 'line' : 'line-strong'), onEarth ? 0.6 : 0.4);
   if (onEarth) drawNight(fill, scene);
   stroke({ type: 'Sphere' }, colour('line-strong'), 1);
+  if (scene.footprint) drawFootprint(ctx, path, scene.footprint);
   drawSites(ctx, projection, scene.sites);
   // Beside bodies, whose colours tell them apart, the vehicle has a colour of its own too.
   const isAlone = !scene.runs.some(({ id }) => id < 0);
@@ -59,8 +69,55 @@ export function drawScene(ctx: CanvasRenderingContext2D, projection: GeoProjecti
     stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour('surface'), 5);
     for (const { places, level } of track) stroke({ type: 'LineString', coordinates: places }, ramp(level), 3);
   }
+  ctx.setLineDash([7, 4]);
+  for (const run of [...scene.found].reverse()) {
+    const track = stretches(run.flight);
+    stroke({ type: 'MultiLineString', coordinates: track.map(({ places }) => places) }, colour(`run-${run.colour}`), 2);
+  }
+  ctx.setLineDash([]);
   drawMarks(ctx, projection, scene);
+  for (const { flight, colour: of } of scene.found) {
+    const point = seen(projection, placeAt(flight, flight.final.time ?? 0));
+    if (point) dot(ctx, point, 3.5, colour(`run-${of}`), colour('surface'));
+  }
+  if (scene.footprint) drawExtremes(ctx, projection, scene.footprint);
+  if (scene.target?.within) {
+    const circle = geoCircle()
+      .center(scene.target.place)
+      .radius((scene.target.within / METRES) * DEGREES);
+    stroke(circle(), colour('text'), 1);
+  }
+  if (scene.target) drawTarget(ctx, seen(projection, scene.target.place));
   if (!onEarth) drawName(ctx, bodyIn(scene.planet));
+}
+
+/** A radius of the Earth, m, by which distances are drawn, and degrees of a radian. */
+const METRES = 6.371e6;
+const DEGREES = 180 / Math.PI;
+
+/** The place that is to be reached: a ring with a cross. */
+function drawTarget(ctx: CanvasRenderingContext2D, point: [number, number] | null): void {
+  if (!point) return;
+  const [x, y] = point;
+  for (const [style, width] of [
+    [colour('surface'), 5],
+    [colour('text'), 2],
+  ] as const) {
+    ctx.beginPath();
+    ctx.arc(x, y, 7, 0, 2 * Math.PI);
+    for (const [dx, dy] of [
+      [1, 0],
+      [-1, 0],
+      [0, 1],
+      [0, -1],
+    ] as const) {
+      ctx.moveTo(x + 4 * dx, y + 4 * dy);
+      ctx.lineTo(x + 12 * dx, y + 12 * dy);
+    }
+    ctx.strokeStyle = style;
+    ctx.lineWidth = width;
+    ctx.stroke();
+  }
 }
 
 /** The planet's name, in the corner. */

@@ -66,6 +66,12 @@ function scaled(flight: Flight, name: Name, unit: AngleUnit): number[] {
   return (flight.columns[name] ?? []).map((value) => value * scale);
 }
 
+/** Flights across each band of a corridor, which is told by altitude and speed: nothing on other axes. */
+export function bandsOf(bands: Flight[][], axes: Axes, unit: AngleUnit): Curve[][] {
+  const isOfBoth = [axes.x, axes.y].every((name) => name === 'altitude' || name === 'speed');
+  return isOfBoth ? bands.map((band) => band.map((flight) => curveOf(flight, axes, unit))) : [];
+}
+
 /** What the columns of a theory are called in a flight. */
 const PREDICTED = {
   time: 'time',

@@ -7,7 +7,8 @@ import { number } from '../figures';
 import { isFlying, type Mark, type Run } from '../flight';
 import type { AngleUnit, Name } from '../quantities';
 import { angleUnit, current, cursor, theory, tracks } from '../store';
-import { type Axes, type Curve, curveOf, isJoined, nearest, predictedOf, rangeOf, titleOf, valueAt } from './curves';
+import { corridorFlights } from '../target/solve';
+import { type Axes, bandsOf, type Curve, curveOf, isJoined, nearest, predictedOf, rangeOf, titleOf, valueAt } from './curves';
 
 /** A curve and how it is drawn. */
 interface Line extends Curve {
@@ -65,6 +66,8 @@ class View {
   private readonly sizes: ResizeObserver;
   private readonly sight: IntersectionObserver;
   private lines: Line[] = [];
+  /** Of a corridor, by the curves of flights across; what is in sight does not depend on them. */
+  private bands: Curve[][] = [];
   private shown: Run[] = [];
   private unit: AngleUnit = 'deg';
   private isSeen = false;
@@ -156,6 +159,7 @@ class View {
     this.unit = unit;
     // Read here, so that the effect around follows it.
     void theory.value;
+    void corridorFlights.value;
     this.isStale = true;
     if (this.isSeen) this.update();
   }
@@ -190,6 +194,7 @@ class View {
     const beside = theory.peek();
     const predicted = beside && predictedOf(beside, axes, unit);
     if (predicted) this.lines.push({ ...predicted, colour: colour('text'), width: 1.6, isDashed: true });
+    this.bands = bandsOf(corridorFlights.peek(), axes, unit);
     if (this.isZoomed) this.plot.redraw();
     else this.fit();
   }
@@ -215,6 +220,7 @@ class View {
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
+    for (const band of this.bands) this.drawBand(ctx, band);
     for (const line of this.lines) this.drawLine(ctx, line);
     const run = this.shown.find(({ id }) => id === 0);
     if (run) for (const mark of run.flight.marks) this.drawMark(ctx, run, mark);
@@ -223,6 +229,28 @@ class View {
     ctx.restore();
     // Where the curves went, by a zoom or another width, the dots go too.
     this.point(cursor.peek());
+  }
+
+  /** Fills a band strip by strip, along one curve and back along the next, and dashes its ends. */
+  private drawBand(ctx: CanvasRenderingContext2D, band: Curve[]): void {
+    ctx.beginPath();
+    for (const [index, from] of band.slice(0, -1).entries()) {
+      const to = band[index + 1] as Curve;
+      from.x.forEach((x, place) => {
+        const [px, py] = this.position(x, from.y[place] as number, true);
+        if (place === 0) ctx.moveTo(px, py);
+        else ctx.lineTo(px, py);
+      });
+      for (let place = to.x.length - 1; place >= 0; place -= 1)
+        ctx.lineTo(...this.position(to.x[place] as number, to.y[place] as number, true));
+      ctx.closePath();
+    }
+    // As one: what strips have in common is no darker.
+    ctx.fillStyle = colour('run-2');
+    ctx.globalAlpha = 0.15;
+    ctx.fill();
+    ctx.globalAlpha = 1;
+    for (const end of [band[0], band.at(-1)]) if (end) this.drawLine(ctx, { ...end, colour: colour('run-2'), width: 1.6, isDashed: true });
   }
 
   private drawLine(ctx: CanvasRenderingContext2D, { x, y, colour: stroke, width, isDashed }: Line): void {

@@ -5,7 +5,8 @@ import { planetOf } from '../planets';
 import { type Name, QUANTITIES, unitOf } from '../quantities';
 import { Scroll } from '../scroll';
 import { added, angleUnit, current, cursor, lastEnd, runs, tracks } from '../store';
-import { type Axes, addable, axesOf, curveOf, type Layout, picked, plotted, titleOf, valueAt } from './curves';
+import { corridorFlights } from '../target/solve';
+import { type Axes, addable, axesOf, bandsOf, curveOf, type Layout, picked, plotted, titleOf, valueAt } from './curves';
 import { Plot } from './plot';
 import './plots.css';
 
@@ -117,9 +118,15 @@ function Card({ axes, unzoom, isLarge = false, onRemove }: CardProps) {
         )}
       </div>
       <Plot axes={axes} height={isLarge ? 300 : 210} unzoom={unzoom} />
+      {hasBands(axes) && <p class="quiet plot-axis">Green: this case within the corridor; dashed: at its ends</p>}
       <p class="quiet plot-axis">{titleHere(axes.x)}</p>
     </div>
   );
+}
+
+/** Whether a plot has a band of a corridor. */
+function hasBands(axes: Axes): boolean {
+  return bandsOf(corridorFlights.value, axes, angleUnit.value).length > 0;
 }
 
 /** The label of a quantity with its unit, on the planet of the current flight. */

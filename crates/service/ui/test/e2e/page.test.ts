@@ -79,7 +79,7 @@ it('every example downloads in every format', async () => {
     }
   }
   await page.close();
-});
+}, 240_000);
 
 it('a flight that stops above the ground is nowhere said to hit it', async () => {
   const { page } = await on({ ...example('target_2'), stop: { altitude: 8000 } });

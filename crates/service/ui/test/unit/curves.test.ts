@@ -1,7 +1,19 @@
 import { describe, expect, it } from 'vitest';
 import type { Theory } from '../../src/api';
 import type { Flight } from '../../src/flight';
-import { addable, axesOf, curveOf, isJoined, nearest, picked, plotted, predictedOf, rangeOf, titleOf } from '../../src/plots/curves';
+import {
+  addable,
+  axesOf,
+  bandsOf,
+  curveOf,
+  isJoined,
+  nearest,
+  picked,
+  plotted,
+  predictedOf,
+  rangeOf,
+  titleOf,
+} from '../../src/plots/curves';
 
 const FLIGHT = {
   columns: { time: [0, 1], altitude: [1000, 0], speed: [10, 20], heading: [179, -179], downrange: [0, 5] },
@@ -27,6 +39,12 @@ describe('a curve', () => {
     expect(curveOf(FLIGHT, { x: 'altitude', y: 'heading' }, 'rad').y[0]).toBeCloseTo(3.1241, 4);
     expect(titleOf('heading', 'rad')).toBe('Heading, rad');
     expect(titleOf('mach', 'rad')).toBe('Mach number');
+  });
+
+  it('of the end of a corridor is of altitude and speed', () => {
+    const curve = { x: [10, 20], y: [1, 0] };
+    expect(bandsOf([[FLIGHT, FLIGHT]], { x: 'speed', y: 'altitude' }, 'deg')).toEqual([[curve, curve]]);
+    expect(bandsOf([[FLIGHT, FLIGHT]], { x: 'time', y: 'altitude' }, 'deg')).toEqual([]);
   });
 
   it('of a theory has gaps where that gives no number', () => {

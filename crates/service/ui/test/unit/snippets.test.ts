@@ -27,6 +27,10 @@ it('a shell gives curl the case as it is', () => {
   expect(JSON.parse(body.join('\n'))).toEqual(TREE);
 });
 
+it('a search is sent to its own path', () => {
+  expect(asCurl(TREE, 'target')).toMatch(/^curl 'http:\/\/localhost:8080\/target' /);
+});
+
 it('Python reads the case as it is', () => {
   const program = asPython(TREE);
   const literal = program.slice(program.indexOf('case = '), program.indexOf('response ='));
