@@ -23,6 +23,8 @@ pub(crate) const SOURCES: [&str; 7] = [
 ];
 /// What is no crate, and no package of the page that Vite knows.
 const COMPONENTS: &str = "licences/components.json";
+/// The texts of crates whose sources come without one: a list of files by the name of the crate.
+const TEXTS_OF_CRATES: &str = "licences/crates.json";
 /// The parts of the program, in the order in which they are read.
 const PARTS: [&str; 4] = ["program", "data", "page", "crate"];
 /// The packages of the page with their licences, beside its files.
@@ -66,8 +68,9 @@ pub(crate) fn write(page: &Path, file: &Path) -> io::Result<()> {
     for package in &packages {
         all.add_package(package)?;
     }
+    let without_text: Value = serde_json::from_slice(&fs::read(TEXTS_OF_CRATES)?)?;
     for linked in crates()? {
-        all.add_crate(&linked)?;
+        all.add_crate(&linked, &without_text)?;
     }
     let Collection { mut components, texts, .. } = all;
     let part = |component: &Value| PARTS.iter().position(|part| component["part"] == *part);
@@ -108,12 +111,16 @@ impl Collection {
         Ok(())
     }
 
-    /// Adds a crate, with the texts that come with its source.
-    fn add_crate(&mut self, linked: &Crate) -> io::Result<()> {
+    /// Adds a crate, with the texts that come with its source, or those that are here in their place.
+    fn add_crate(&mut self, linked: &Crate, without_text: &Value) -> io::Result<()> {
         let Crate { name, version, licence, repository } = linked;
         let mut texts = BTreeSet::new();
         for file in files(&linked.folder()?)? {
             texts.insert(self.number(&read(&file)?)?);
+        }
+        let here = without_text[name].as_array().filter(|_| texts.is_empty());
+        for file in here.into_iter().flatten().filter_map(Value::as_str) {
+            texts.insert(self.number(&read(Path::new(file))?)?);
         }
         let source =
             if repository.is_empty() { format!("https://crates.io/crates/{name}") } else { repository.clone() };
@@ -180,20 +187,21 @@ fn listed(line: &str) -> Option<Crate> {
     Some(Crate { name: name.to_owned(), version, licence, repository: fields.next()?.to_owned() })
 }
 
-/// The files of licences below a folder, in order.
+/// The files of licences below a folder, in order: by their own name, or by that of their folder.
 fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let names_licence = |name: &str| NAMES.iter().any(|begin| name.starts_with(begin));
     let mut found = Vec::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(folder) = open.pop() {
+    let mut open = vec![(folder.to_owned(), false)];
+    while let Some((folder, is_of_licences)) = open.pop() {
         for entry in fs::read_dir(folder)? {
             let path = entry?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
             if path.is_dir() {
                 // What only tests need is not in the program.
                 if !["benches", "examples", "tests"].contains(&name.as_str()) {
-                    open.push(path);
+                    open.push((path, names_licence(&name)));
                 }
-            } else if NAMES.iter().any(|begin| name.starts_with(begin))
+            } else if (is_of_licences || names_licence(&name))
                 && path.extension().is_none_or(|end| end != "rs")
                 && !path.ends_with(NOT_CHOSEN)
             {

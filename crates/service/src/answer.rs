@@ -1,5 +1,14 @@
 //! From the tree of a request to the bytes of its answer: what the endpoints and the command line have in common.
 
+mod corridor;
+mod footprint;
+mod search;
+mod target;
+
+pub use corridor::corridor;
+pub use footprint::footprint;
+pub use target::target;
+
 use std::io::{self, ErrorKind, Write};
 use std::iter;
 use std::rc::Rc;
@@ -95,6 +104,7 @@ fn work<'a>(flights: impl Iterator<Item = &'a Trajectory>, rows: &[Option<Vec<Fl
     let mut work = Work { rows: rows.iter().flatten().map(|rows| rows.len() as u64).sum(), ..Work::default() };
     for flight in flights {
         let Statistics { steps, rejected_steps, evaluations } = flight.statistics();
+        work.flights += 1;
         work.steps += steps as u64;
         work.rejected_steps += rejected_steps as u64;
         work.evaluations += evaluations as u64;

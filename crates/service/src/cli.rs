@@ -70,6 +70,39 @@ pub enum Command {
         #[arg(long, short, value_parser = Format::offered(&Format::OF_THEORIES), default_value = "json")]
         format: Format,
     },
+    /// Find numbers of a case with which its flight achieves goals, for one case or a list: the JSON of POST /target
+    #[command(after_help = [TARGET_EXAMPLES, EXIT_CODES].concat())]
+    Target {
+        /// The cases.
+        #[command(flatten)]
+        cases: States,
+
+        /// Output format; a target is available only as JSON
+        #[arg(long, short, value_parser = ["json"], default_value = "json")]
+        format: String,
+    },
+    /// Find the values of a number with which flights keep limits, for one case or a list: the JSON of POST /corridor
+    #[command(after_help = [CORRIDOR_EXAMPLES, EXIT_CODES].concat())]
+    Corridor {
+        /// The cases.
+        #[command(flatten)]
+        cases: States,
+
+        /// Output format; a corridor is available only as JSON
+        #[arg(long, short, value_parser = ["json"], default_value = "json")]
+        format: String,
+    },
+    /// Find the ground that flights reach, for one case or a list: the JSON of POST /footprint
+    #[command(after_help = [FOOTPRINT_EXAMPLES, EXIT_CODES].concat())]
+    Footprint {
+        /// The cases.
+        #[command(flatten)]
+        cases: States,
+
+        /// Output format
+        #[arg(long, short, value_parser = Format::offered(&Format::OF_FOOTPRINTS), default_value = "json")]
+        format: Format,
+    },
     /// Convert one state or a list of states to all coordinate systems: the JSON of POST /convert
     #[command(after_help = [CONVERT_EXAMPLES, EXIT_CODES].concat())]
     Convert {
@@ -136,6 +169,30 @@ const ANALYTIC_EXAMPLES: &str = r#"Examples:
 The field solution of a case names the theory: shallow_glide, loh, steep_glide, steep_ballistic or medium_glide.
 
 "#;
+
+const TARGET_EXAMPLES: &str = r"Examples:
+  reentry target case.json | jq '.solutions[] | [.values, .distance]'
+  reentry target case.json | jq '.solutions[0].case' | reentry simulate -
+
+The field vary of a case names numbers and their ranges, achieve what its flight must achieve. A case whose goals are out of reach is
+no failure: outcome and nearest say so.
+
+";
+
+const CORRIDOR_EXAMPLES: &str = r"Examples:
+  reentry corridor case.json | jq '.bands[] | [.from, .to]'
+
+The field vary of a case names the number and its range, limits what its flights must keep.
+
+";
+
+const FOOTPRINT_EXAMPLES: &str = r"Examples:
+  reentry footprint case.json | jq '.area, .extent'
+  reentry footprint case.json --format geojson --output footprint.geojson
+
+The field vary of a case names numbers and their ranges, limits what its flights must keep.
+
+";
 
 const CONVERT_EXAMPLES: &str = r#"Examples:
   reentry convert state.json
@@ -252,7 +309,18 @@ impl Command {
             Self::Serve(config) => serve(*config),
             Self::Simulate { cases, format } => cases.run(format, answer::simulate),
             Self::Analytic { cases, format } => cases.run(format, answer::analytic),
-            Self::Convert { states, .. } => states.run(|tree, _, _, interrupt| answer::convert(tree, interrupt)),
+            Self::Target { cases, .. } => {
+                cases.run(Format::Json, |tree, _, _, interrupt| answer::target(tree, None, interrupt))
+            }
+            Self::Corridor { cases, .. } => {
+                cases.run(Format::Json, |tree, _, _, interrupt| answer::corridor(tree, interrupt))
+            }
+            Self::Footprint { cases, format } => {
+                cases.run(format, |tree, format, _, interrupt| answer::footprint(tree, format, None, interrupt))
+            }
+            Self::Convert { states, .. } => {
+                states.run(Format::Json, |tree, _, _, interrupt| answer::convert(tree, interrupt))
+            }
             Self::Validate(validate) => validate.run(),
             Self::Healthcheck(healthcheck) => {
                 healthcheck.run()?;

@@ -8,7 +8,9 @@
 pub mod analytic;
 pub mod batch;
 pub mod convert;
+pub mod corridor;
 pub mod docs;
+pub mod footprint;
 pub mod guide;
 pub mod health;
 pub mod licences;
@@ -17,4 +19,5 @@ pub mod page;
 pub mod planets;
 pub mod simulate;
 pub mod sites;
+pub mod target;
 pub mod validation;

@@ -37,6 +37,9 @@ impl Format {
     /// Those of a theory beside a flight.
     pub const OF_THEORIES: [Self; 2] = [Self::Json, Self::Csv];
 
+    /// Those of a footprint.
+    pub const OF_FOOTPRINTS: [Self; 2] = [Self::Json, Self::Geojson];
+
     /// The name in `?format=`.
     fn name(self) -> &'static str {
         match self {

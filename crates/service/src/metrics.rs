@@ -26,7 +26,8 @@ struct Route {
     route: String,
 }
 
-/// How a request ended: `ok`, the last part of the problem's `type`, or `abandoned` where its client went away.
+/// How a request ended: `ok`, the last part of the problem's `type`, or `abandoned` where its client went away. How a search ended: the word of
+/// its answer, or `band` and `no_band`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct Ending {
     route: String,
@@ -52,9 +53,13 @@ struct Kind {
     kind: &'static str,
 }
 
-/// What a flight cost.
+/// What an answer cost, and how its search ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
+    /// How the search ended, where there was one: a word of ours.
+    pub search: Option<&'static str>,
+    /// Flights that were completed.
+    pub flights: u64,
     /// Accepted steps of the integrator.
     pub steps: u64,
     /// Steps that were tried and missed the tolerance.
@@ -92,6 +97,8 @@ pub struct Metrics {
     compute: Times<Route>,
     cancelled: Family<Cancelled, Counter>,
     cases: Family<CaseEnding, Counter>,
+    searches: Family<Ending, Counter>,
+    flights: Family<Route, Counter>,
     steps: Family<Route, Counter>,
     rejected_steps: Family<Route, Counter>,
     evaluations: Family<Route, Counter>,
@@ -140,6 +147,8 @@ impl Metrics {
             compute: times(),
             cancelled: Family::default(),
             cases: Family::default(),
+            searches: Family::default(),
+            flights: Family::default(),
             steps: Family::default(),
             rejected_steps: Family::default(),
             evaluations: Family::default(),
@@ -176,6 +185,8 @@ impl Metrics {
             self.cancelled.clone(),
         );
         r.register("batch_cases", "Cases of batches", self.cases.clone());
+        r.register("searches", "Completed searches, by their outcome", self.searches.clone());
+        r.register("flights", "Completed flights, those of searches included", self.flights.clone());
         r.register("integration_steps", "Accepted integration steps of completed flights", self.steps.clone());
         r.register(
             "integration_steps_rejected",
@@ -281,10 +292,14 @@ impl Metrics {
         self.cases.get_or_create(&CaseEnding { outcome }).inc();
     }
 
-    /// A flight is finished.
+    /// A flight, or a search with all of its flights, is finished.
     pub fn flown(&self, route: &'static str, work: Work) {
+        if let Some(outcome) = work.search {
+            self.searches.get_or_create(&Ending { route: route.to_owned(), outcome }).inc();
+        }
         let route = Route { route: route.to_owned() };
         for (counter, count) in [
+            (&self.flights, work.flights),
             (&self.steps, work.steps),
             (&self.rejected_steps, work.rejected_steps),
             (&self.evaluations, work.evaluations),

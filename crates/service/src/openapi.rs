@@ -48,11 +48,14 @@ schemas `x-unit` is the unit of a field, `angle` for the one of `angle_unit`.
 `type` answers a page that says what to do, as does `/warnings/CODE` for the warnings of an answer.";
 
 /// The paths in the order in which a reader needs them.
-const ORDER: [&str; 11] = [
+const ORDER: [&str; 14] = [
     "/simulate",
     "/simulate/batch",
     "/convert",
     "/analytic",
+    "/target",
+    "/corridor",
+    "/footprint",
     "/planets",
     "/sites",
     "/validation",
@@ -104,6 +107,9 @@ pub fn strict(api: &utoipa::openapi::OpenApi) -> Value {
             ("/analytic", "post", json!(["json", "csv"])),
             ("/simulate/batch", "post", json!(["ndjson"])),
             ("/convert", "post", json!(["json"])),
+            ("/target", "post", json!(["json"])),
+            ("/corridor", "post", json!(["json"])),
+            ("/footprint", "post", json!(["json", "geojson"])),
             ("/sites", "get", json!(["json", "csv", "geojson"])),
             ("/validation", "get", json!(["json"])),
             ("/licences", "get", json!(["text", "json"])),
@@ -210,7 +216,7 @@ fn add_headers(paths: &mut Map<String, Value>) {
 
 /// What is echoed can be sent again.
 fn add_links(paths: &mut Map<String, Value>) {
-    for path in ["/simulate", "/analytic", "/convert"] {
+    for path in ["/simulate", "/analytic", "/convert", "/target", "/corridor", "/footprint"] {
         let operation = &mut paths[path]["post"];
         let again = json!({
             "operationId": operation["operationId"],
@@ -270,12 +276,32 @@ fn add_examples(paths: &mut Map<String, Value>) {
         "steep_ballistic": {"summary": "Steep ballistic entry from 400 km beside the ballistic theory",
             "value": parsed(include_str!("../../../openapi/examples/steep_ballistic.json"))},
     });
+    let target = json!({
+        "landing_site": {"summary": "Landing site: time of the deorbit burn and bank angle",
+            "value": parsed(include_str!("../../../openapi/examples/target.json"))},
+        "boundary_values": {"summary": "TARGET's boundary value problem: ascending and descending solution",
+            "value": parsed(include_str!("../../../openapi/examples/boundary_values.json"))},
+    });
+    let corridor = json!({
+        "lunar_return": {"summary": "Lunar return: load limit with the lift up, capture with the lift down",
+            "value": parsed(include_str!("../../../openapi/examples/corridor.json"))},
+    });
+    let footprint = json!({
+        "two_banks": {"summary": "Capsule from orbit: two bank angles, load limit",
+            "value": parsed(include_str!("../../../openapi/examples/footprint.json"))},
+    });
     let batch = json!({
         "list": {"summary": "Two cases", "value": [simulate["deorbit"]["value"], simulate["sample_return"]["value"]]},
     });
-    for (path, examples) in
-        [("/simulate", simulate), ("/simulate/batch", batch), ("/convert", convert), ("/analytic", analytic)]
-    {
+    for (path, examples) in [
+        ("/simulate", simulate),
+        ("/simulate/batch", batch),
+        ("/convert", convert),
+        ("/analytic", analytic),
+        ("/target", target),
+        ("/corridor", corridor),
+        ("/footprint", footprint),
+    ] {
         paths[path]["post"]["requestBody"]["content"]["application/json"]["examples"] = examples;
     }
     for (path, media_type, answer) in [

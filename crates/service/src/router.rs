@@ -1,5 +1,7 @@
 //! Every route.
 
+use std::sync::LazyLock;
+
 use axum::body::Bytes;
 use axum::extract::{OriginalUri, State};
 use axum::http::request::Parts;
@@ -14,7 +16,8 @@ use utoipa_axum::routes;
 
 use crate::config::Origins;
 use crate::endpoints::{
-    analytic, batch, convert, docs, guide, health, licences, metrics, page, planets, simulate, sites, validation,
+    analytic, batch, convert, corridor, docs, footprint, guide, health, licences, metrics, page, planets, simulate,
+    sites, target, validation,
 };
 use crate::error::ApiError;
 use crate::middleware::{REQUEST_ID, check_head, limit, observe, protect};
@@ -29,6 +32,9 @@ fn routes() -> OpenApiRouter<AppState> {
         .routes(routes!(batch::simulate_batch))
         .routes(routes!(convert::convert))
         .routes(routes!(analytic::analytic))
+        .routes(routes!(target::target))
+        .routes(routes!(corridor::corridor))
+        .routes(routes!(footprint::footprint))
         .routes(routes!(planets::planets))
         .routes(routes!(sites::sites))
         .routes(routes!(validation::validation))
@@ -42,8 +48,9 @@ fn with_metrics(routes: OpenApiRouter<AppState>) -> OpenApiRouter<AppState> {
 }
 
 /// The OpenAPI document that the service gives and that is committed as `openapi/openapi.json`.
-pub fn document() -> Value {
-    openapi::strict(with_metrics(routes()).get_openapi())
+pub fn document() -> &'static Value {
+    static DOCUMENT: LazyLock<Value> = LazyLock::new(|| openapi::strict(with_metrics(routes()).get_openapi()));
+    &DOCUMENT
 }
 
 /// The whole service.

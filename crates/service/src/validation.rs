@@ -4,6 +4,7 @@ pub mod cases;
 pub mod flights;
 pub mod nesc;
 
+mod corridors;
 mod frames;
 mod number;
 mod report;
@@ -76,7 +77,8 @@ pub struct Check {
 /// Group of cases. `thesis`: the seven cases of the thesis. `conversions`: the initial conditions that the thesis
 /// prints. `theories`: the closed-form theories of the thesis compared with flights. `check_cases`: NASA's check cases.
 /// `standard_air`: the U.S. Standard Atmosphere, 1976. `frames`: coordinates and orbital elements. `bodies`: entries at
-/// other planets, compared with another program. `flights`: real entries.
+/// planets, compared with another program. `flights`: real entries. `corridors`: entry corridors, compared with another
+/// program and with an approximate theory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Group {
@@ -94,20 +96,23 @@ pub enum Group {
     Frames,
     /// Launches and separations, as closed forms have them.
     Ascents,
-    /// Entries at other planets, as another program flies them.
+    /// Entries at planets, as another program flies them.
     Bodies,
     /// Flights that were flown.
     Flights,
+    /// Entry corridors, as another program and an approximate theory have them.
+    Corridors,
 }
 
 /// Kind of check. `reference`: all inputs are known; a difference greater than allowed is a failure. `plausibility`:
-/// some inputs are assumed or were not measured; the difference is reported and never a failure.
+/// some inputs are assumed or were not measured, or the reference is approximate; the difference is reported and never a
+/// failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// All is known that the result depends on: a difference greater than allowed is a fault.
     Reference,
-    /// Something had to be assumed, or was not measured: the difference is told, and never a fault.
+    /// Something had to be assumed, was not measured, or is approximate: the difference is told, and never a fault.
     Plausibility,
 }
 
@@ -127,6 +132,7 @@ impl Validation {
             standard_air::checks(program)?,
             frames::checks(),
             flights::checks(program)?,
+            corridors::checks(program)?,
         ];
         Ok(Self::of(groups.concat()))
     }
@@ -246,6 +252,10 @@ impl Program<'_> {
         answered(answer::simulate(request, Format::Json, Self::ROW_LIMIT, self.interrupt))
     }
 
+    fn corridor(self, request: Value) -> Result<Value, ApiError> {
+        answered(answer::corridor(request, self.interrupt))
+    }
+
     fn analytic(self, request: Value) -> Result<Value, ApiError> {
         answered(answer::analytic(request, Format::Json, Self::ROW_LIMIT, self.interrupt))
     }
@@ -322,7 +332,7 @@ mod tests {
         let text = validation.to_text();
         assert_eq!(text.matches("FAILED").count(), 2, "{text}");
         assert!(text.ends_with(
-            "3 checks against references: 2 failed. 0 comparisons with real flights, for information only.\n"
+            "3 checks against references: 2 failed. 0 comparisons with real flights and approximations, for information only.\n"
         ));
         // The line of the case is of the one that is furthest from what is expected.
         assert!(validation.to_markdown().contains("| a case | 3 | a length | 10.0 m | - | - | 0.5 m | 1 |"));

@@ -32,14 +32,20 @@ pub mod batch;
 pub mod bodies;
 pub mod columns;
 pub mod convert;
+pub mod corridor;
 pub mod dispersions;
 pub mod ephemeris;
+pub mod footprint;
 pub mod numbers;
 pub mod outputs;
+pub mod requirements;
 pub mod scenario;
+pub mod search;
 pub mod sensitivities;
+pub mod target;
 pub mod track;
 pub mod trajectory;
+pub mod vary;
 pub mod verification;
 pub mod warning;
 
@@ -57,6 +63,9 @@ pub fn request_schemas() -> Components {
     schemas(&mut components, scenario::simulate_request);
     schemas(&mut components, analytic::analytic_request);
     schemas(&mut components, convert::convert_request);
+    schemas(&mut components, corridor::corridor_request);
+    schemas(&mut components, footprint::footprint_request);
+    schemas(&mut components, target::target_request);
     components
 }
 

@@ -56,12 +56,12 @@ impl Cases {
 }
 
 impl States {
-    /// Answers every state.
+    /// Answers every state in a format.
     ///
     /// # Errors
     /// When a state is not valid, or a file cannot be read or written.
-    pub fn run(&self, answer: impl Answer) -> Result<(), Failure> {
-        Run { place: self.place(), format: Format::Json, row_limit: 0, answer }.all(self)
+    pub fn run(&self, format: Format, answer: impl Answer) -> Result<(), Failure> {
+        Run { place: self.place(), format, row_limit: 0, answer }.all(self)
     }
 
     fn is_standard(&self) -> bool {
@@ -115,7 +115,10 @@ impl<A: Answer> Run<A> {
 
     fn one(&self, text: &[u8], mut output: Output) -> Result<(), Failure> {
         let tree = json::parse(text).map_err(|error| self.failed(&error.into()))?;
-        let answer = self.answer(tree, &AtomicBool::new(false)).map_err(|error| self.failed(&error))?;
+        let waiting = Waiting::new();
+        let answer = self.answer(tree, &waiting);
+        waiting.0.finish_and_clear();
+        let answer = answer.map_err(|error| self.failed(&error))?;
         output.write(&with_line_end(answer))?;
         output.finish()
     }
@@ -219,6 +222,27 @@ fn progress(count: usize, output: &Output) -> ProgressBar {
     }
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len} cases, {eta} to go");
     ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// The flights of a single search so far, on standard error where that is a terminal; nobody ends it.
+#[derive(Debug)]
+struct Waiting(ProgressBar);
+
+impl Waiting {
+    fn new() -> Self {
+        let style = ProgressStyle::with_template("{spinner} {pos} flights, {elapsed}");
+        Self(ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner())))
+    }
+}
+
+impl Interrupt for Waiting {
+    fn is_raised(&self) -> bool {
+        false
+    }
+
+    fn begins_flight(&self, number: u64) {
+        self.0.set_position(number);
+    }
 }
 
 /// A problem document for people: its title and detail, and a line a fault, but not more than so many.

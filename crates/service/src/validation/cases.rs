@@ -48,6 +48,12 @@ pub const FLIGHTS: &str = include_str!("../../../../tests/cases/flights/flights.
 /// Flights of another program at other planets.
 pub const AMAT: &str = include_str!("../../../../tests/cases/bodies/amat.json");
 
+/// Flights and corridors of that program as its author published them.
+pub const AMAT_PUBLISHED: &str = include_str!("../../../../tests/cases/flights/amat.json");
+
+/// Depths of corridors, and a load, as Chapman's theory has them.
+pub const CHAPMAN: &str = include_str!("../../../../tests/cases/flights/chapman.json");
+
 /// Launches and separations with closed forms.
 pub const CLOSED_FORMS: &str = include_str!("../../../../tests/cases/ascents/closed_forms.json");
 

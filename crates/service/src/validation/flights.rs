@@ -1,5 +1,5 @@
-//! Launches beside closed forms, entries at other planets as another program flies them, and flights that were flown, beside what was published
-//! of them: not all is known that those depend on, and nothing is tuned.
+//! Launches beside closed forms, entries as another program flies them, in the same air and as its author published them, and flights that were
+//! flown, beside what was published of them: not all is known that those depend on, and nothing is tuned.
 
 use serde_json::{Map, Value, json};
 
@@ -10,13 +10,14 @@ use crate::error::ApiError;
 pub(super) fn checks(program: Program) -> Result<Vec<Check>, ApiError> {
     let closed_forms = of_file(program, Group::Ascents, &tree(cases::CLOSED_FORMS))?;
     let of_another_program = of_file(program, Group::Bodies, &tree(cases::AMAT))?;
+    let published = of_file(program, Group::Bodies, &tree(cases::AMAT_PUBLISHED))?;
     let on_earth = of_file(program, Group::Flights, &tree(cases::FLIGHTS))?;
     let elsewhere = of_file(program, Group::Flights, &tree(cases::FLIGHTS_AT_PLANETS))?;
     let launchers = of_file(program, Group::Flights, &tree(cases::LAUNCHERS))?;
-    Ok([closed_forms, of_another_program, on_earth, elsewhere, launchers].concat())
+    Ok([closed_forms, of_another_program, published, on_earth, elsewhere, launchers].concat())
 }
 
-fn of_file(program: Program, group: Group, file: &Value) -> Result<Vec<Check>, ApiError> {
+pub(super) fn of_file(program: Program, group: Group, file: &Value) -> Result<Vec<Check>, ApiError> {
     let mut checks = Vec::new();
     for flight in elements(&file["flights"]) {
         let [case, source, note] = ["name", "source", "note"].map(|name| text(&flight[name]));
@@ -44,7 +45,7 @@ fn of_file(program: Program, group: Group, file: &Value) -> Result<Vec<Check>, A
     Ok(checks)
 }
 
-fn elements(list: &Value) -> &[Value] {
+pub(super) fn elements(list: &Value) -> &[Value] {
     list.as_array().map_or(&[], Vec::as_slice)
 }
 
@@ -63,7 +64,7 @@ pub fn request(file: &Value, flight: &Value, when: &Value) -> Value {
 }
 
 /// A merge patch (RFC 7396): null takes a field away.
-fn merge(target: &mut Value, patch: &Value) {
+pub(super) fn merge(target: &mut Value, patch: &Value) {
     let Value::Object(patch) = patch else {
         *target = patch.clone();
         return;

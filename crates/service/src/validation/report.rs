@@ -35,7 +35,7 @@ impl Validation {
             let [_, name, quantity, rest @ ..] = line(nearest, &mut notes);
             let _ = writeln!(text, "| {name} | {} | {quantity} | {} |", case.len(), rest.join(" | "));
         }
-        text += "\n| real flight | quantity | published | got | difference | uncertainty | source |\n";
+        text += "\n| real flight or approximation | quantity | published | got | difference | uncertainty | source |\n";
         text += "| --- | --- | --- | --- | --- | --- | --- |\n";
         for check in plausible {
             let [_, cells @ ..] = line(check, &mut notes);
@@ -51,8 +51,8 @@ impl Validation {
         let rest = self.checks.len() - checks;
         let missed = if missed == 0 { "all passed".to_owned() } else { format!("{missed} failed") };
         format!(
-            "{checks} checks against references: {missed}. {rest} comparisons with real flights, for information \
-             only."
+            "{checks} checks against references: {missed}. {rest} comparisons with real flights and \
+             approximations, for information only."
         )
     }
 }
@@ -67,8 +67,9 @@ impl Group {
             Self::StandardAir => "The U.S. Standard Atmosphere, 1976",
             Self::Frames => "Coordinates and orbital elements",
             Self::Ascents => "Launches and separations compared with closed forms",
-            Self::Bodies => "Entries at other planets compared with AMAT",
+            Self::Bodies => "Entries compared with AMAT",
             Self::Flights => "Real flights, for information only",
+            Self::Corridors => "Entry corridors compared with AMAT and with Chapman's theory",
         }
     }
 }

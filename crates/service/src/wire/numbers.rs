@@ -15,7 +15,19 @@ use super::shown::shown;
 pub const MOST_VARIED: usize = 64;
 
 /// Parts of a request that are no part of its case: what they hold does not vary.
-const OUTSIDE_THE_CASE: [&str; 6] = ["/solver", "/output", "/angle_unit", "/sensitivities", "/dispersions", "/verify"];
+const OUTSIDE_THE_CASE: [&str; 11] = [
+    "/solver",
+    "/output",
+    "/angle_unit",
+    "/sensitivities",
+    "/dispersions",
+    "/verify",
+    "/vary",
+    "/limits",
+    "/achieve",
+    "/search",
+    "/resolution",
+];
 
 /// A request whose numbers may vary.
 #[derive(Clone, Debug)]

@@ -123,7 +123,8 @@ pub(super) fn output(object: &mut Object) -> Option<FlightOutput> {
     object.alternatives(&[("quantity", &quantity), ("site", &at_site)])
 }
 
-fn quantity(object: &mut Object) -> Option<FlightOutput> {
+/// A quantity at a moment.
+pub(super) fn quantity(object: &mut Object) -> Option<FlightOutput> {
     let columns: Vec<_> = COLUMNS.iter().filter(|column| column.is_number()).collect();
     let names: Vec<_> = columns.iter().map(|column| column.name).collect();
     let column = object.field("quantity", "Quantity").doc("Column of the trajectory.").name(&names);
@@ -161,7 +162,8 @@ fn at_time(object: &mut Object) -> Option<At> {
     Some(At::Moment(Moment::Time(time?)))
 }
 
-fn at_site(object: &mut Object) -> Option<FlightOutput> {
+/// The place of the end relative to a site.
+pub(super) fn at_site(object: &mut Object) -> Option<FlightOutput> {
     object
         .field("site", "Site")
         .doc("Site on the planet's surface: its slug in `GET /sites`, or its longitude and latitude.")
@@ -237,7 +239,7 @@ impl FlightOutput {
 }
 
 /// The place of the event of a name; or how many there are of the name.
-fn place_of(name: &str, events: &[Event]) -> Result<usize, usize> {
+pub(super) fn place_of(name: &str, events: &[Event]) -> Result<usize, usize> {
     let mut places = events.iter().enumerate().filter(|(_, event)| event.name.as_deref() == Some(name));
     match (places.next(), places.count()) {
         (Some((place, _)), 0) => Ok(place),

@@ -272,10 +272,10 @@ impl ObjectReader<'_> {
 
     /// One of several words, by its index.
     pub fn word(&mut self, name: &'static str, words: &[&str]) -> Option<usize> {
-        let expected = format!("must be one of {}", words.join(", "));
+        let expected = || format!("must be one of {}", words.join(", "));
         let chosen = match self.map.get(name) {
-            None => Err(format!("is required; it {expected}")),
-            Some(value) => chosen(value, words).map_err(|got| format!("{expected}, got {got}")),
+            None => Err(format!("is required; it {}", expected())),
+            Some(value) => chosen(value, words).map_err(|got| format!("{}, got {got}", expected())),
         };
         self.known.push(name);
         self.kind_unknown |= chosen.is_err() && (name == "type" || name == "model");
@@ -550,15 +550,20 @@ impl ObjectReader<'_> {
         if self.kind_unknown {
             return;
         }
-        let mut known: Vec<_> = Vec::new();
-        for name in &self.known {
-            if !known.contains(name) {
-                known.push(*name);
+        let known = &self.known;
+        let mut unknown = self.map.keys().filter(|name| !known.contains(&name.as_str())).peekable();
+        if unknown.peek().is_none() {
+            return;
+        }
+        let mut fields: Vec<_> = Vec::new();
+        for name in known {
+            if !fields.contains(name) {
+                fields.push(*name);
             }
         }
         // The first is told the fields that there are, for all.
-        let mut fields = format!("; the fields are {}", known.join(", "));
-        for name in self.map.keys().filter(|name| !known.contains(&name.as_str())) {
+        let mut fields = format!("; the fields are {}", fields.join(", "));
+        for name in unknown {
             let escaped = name.replace('~', "~0").replace('/', "~1");
             let detail = format!("is not a field here{}", std::mem::take(&mut fields));
             self.context.note(format!("{}/{escaped}", self.pointer), detail);

@@ -553,6 +553,17 @@ impl SimulateRequest {
         Ok(Some(numbers))
     }
 
+    /// What is asked beyond a flight, and has no place where many are flown.
+    pub(super) fn analyses_faults(&self) -> Vec<Fault> {
+        let asked = [
+            ("/sensitivities", self.sensitivities.is_something()),
+            ("/verify", self.verify),
+            ("/dispersions", !self.dispersions.is_empty()),
+        ];
+        let misplaced = asked.into_iter().filter(|(_, asked)| *asked);
+        misplaced.map(|(pointer, _)| Fault::new(pointer, "must be left out: only /simulate supports it")).collect()
+    }
+
     /// What is asked for and has no place where the answer has rows alone.
     pub(super) fn beyond_rows(&self, output: RequestedOutput) -> Vec<Fault> {
         let asked = [

@@ -24,8 +24,8 @@ pub mod names {
     }
 
     names! {
-        AnalyticRequest AngleUnit ConvertRequest Ecef Eci Formulation Geodetic InertialFlightPath OrbitalElements PlanetModel PlanetRelative Shape
-        SimulateRequest Solution
+        AnalyticRequest AngleUnit ConvertRequest CorridorRequest Ecef Eci FootprintRequest Formulation Geodetic InertialFlightPath OrbitalElements PlanetModel PlanetRelative Shape
+        SimulateRequest Solution TargetRequest
     }
 }
 

@@ -4,7 +4,7 @@
 //! for. They are those of the case's planet: on a map of the Earth they lie where the map has these numbers.
 
 mod czml;
-mod geojson;
+pub(in crate::wire) mod geojson;
 mod kml;
 
 use std::iter;

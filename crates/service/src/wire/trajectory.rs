@@ -355,7 +355,7 @@ pub struct FlightOfAnswer<'a> {
 
 impl FlightReport {
     /// What is told of the flight of a body by a request, with the rows that it asks for.
-    fn new(request: &SimulateRequest, body: &FlownBody, points: Option<Vec<FlightPoint>>) -> Self {
+    pub(super) fn new(request: &SimulateRequest, body: &FlownBody, points: Option<Vec<FlightPoint>>) -> Self {
         let (unit, FlownBody { described: DescribedBody { events, .. }, flight, known, .. }) =
             (request.angle_unit, body);
         let row = |point| Row::new(point, unit, *known);
@@ -382,17 +382,14 @@ impl FlightReport {
         let shape = &request.planet.core.shape;
         let nearest_site = request.output.sites.then(|| NearestSite::to(&ground_point(&last), shape, unit)).flatten();
         let phases = flight.phases();
-        let (termination, condition) = match flight.termination() {
-            CoreTermination::SurfaceImpact => (Termination::SurfaceImpact, None),
-            CoreTermination::StopAltitude => (Termination::StopAltitude, None),
-            CoreTermination::TimeLimit => (Termination::TimeLimit, None),
-            CoreTermination::Condition(index) => (Termination::Condition, Some(index)),
-            CoreTermination::AtmosphereExit => (Termination::AtmosphereExit, None),
+        let condition = match flight.termination() {
+            CoreTermination::Condition(index) => Some(index),
+            _ => None,
         };
         let propellant = |point: &FlightPoint, part: &str| body.propellant(point, part);
         let chosen = request.output.columns.as_deref();
         Self {
-            termination,
+            termination: flight.termination().into(),
             condition,
             initial_state: row(flight.initial()),
             final_state: row(last),
@@ -491,6 +488,18 @@ impl SimulateResponse {
             table.write_csv_lines(csv, &beginning.unwrap_or_default())?;
         }
         Ok(())
+    }
+}
+
+impl From<CoreTermination> for Termination {
+    fn from(termination: CoreTermination) -> Self {
+        match termination {
+            CoreTermination::SurfaceImpact => Self::SurfaceImpact,
+            CoreTermination::StopAltitude => Self::StopAltitude,
+            CoreTermination::TimeLimit => Self::TimeLimit,
+            CoreTermination::Condition(_) => Self::Condition,
+            CoreTermination::AtmosphereExit => Self::AtmosphereExit,
+        }
     }
 }
 

@@ -56,7 +56,21 @@ impl Warning {
         let flight = vehicle.flight;
         let of_flight = |warning: &_| Self::of_flight(*warning, request.angle_unit, &vehicle.described);
         let mut warnings: Vec<_> = flight.warnings().iter().map(of_flight).collect();
-        warnings.extend(request.assumed.angle_unit.then(Self::angle_unit_assumed));
+        warnings.extend(Self::of_request(request, purpose));
+        if let Some(error) = unverified {
+            let detail = format!("Verification failed: at a hundredth of its tolerance, {error}");
+            warnings.push(Self::new("not_verified", &detail));
+        }
+        let relative_tolerance = request.solver.relative_tolerance;
+        if flight.end_time() > longest_within_a_metre(relative_tolerance) && !request.verify {
+            warnings.push(Self::long_flight(flight.end_time(), relative_tolerance));
+        }
+        warnings
+    }
+
+    /// What there is to know of a request, whatever is flown.
+    pub fn of_request(request: &SimulateRequest, purpose: Purpose) -> Vec<Self> {
+        let mut warnings: Vec<_> = request.assumed.angle_unit.then(Self::angle_unit_assumed).into_iter().collect();
         warnings
             .extend(request.assumed.thesis_atmosphere.then(|| Self::thesis_atmosphere(request.planet.model, purpose)));
         warnings.extend(Self::gas_of_earth(request));
@@ -69,13 +83,21 @@ impl Warning {
             warnings.push(Self::new("angle_of_attack_unused", detail));
         }
         warnings.extend(Self::of_frame(&request.initial_state, request.epoch, &request.planet));
-        if let Some(error) = unverified {
-            let detail = format!("Verification failed: at a hundredth of its tolerance, {error}");
-            warnings.push(Self::new("not_verified", &detail));
+        warnings
+    }
+
+    /// What there is to know of a footprint, of the part of whose ranges so much lands.
+    pub fn of_footprint(landed: f64, is_complete: bool) -> Vec<Self> {
+        let mut warnings = Vec::new();
+        if landed < 1.0 {
+            let detail = "With a part of the ranges flights do not land, or fail: the footprint has what the others reach. `landed` tells \
+                          how many, `classes` how flights end, `search.failed` which fail";
+            warnings.push(Self::new("partly_landed", detail));
         }
-        let relative_tolerance = request.solver.relative_tolerance;
-        if flight.end_time() > longest_within_a_metre(relative_tolerance) && !request.verify {
-            warnings.push(Self::long_flight(flight.end_time(), relative_tolerance));
+        if !is_complete {
+            let detail = "The boundary is not as accurate as resolution: flights or time ran out, or it follows an edge where flights jump \
+                          to another end. Increase search.flights or resolution, or narrow the ranges";
+            warnings.push(Self::new("coarse_boundary", detail));
         }
         warnings
     }

@@ -120,11 +120,16 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
 
     /// A whole number between two.
     pub fn whole_number(self, [least, most]: [usize; 2]) -> Option<usize> {
-        let mut schema = json!({"type": "integer", "minimum": least});
-        if most < usize::MAX {
-            schema["maximum"] = json!(most);
-        }
-        self.take(|_| schema, |reader, name| reader.whole_number(name, [least, most]))
+        self.take(
+            |_| {
+                let mut schema = json!({"type": "integer", "minimum": least});
+                if most < usize::MAX {
+                    schema["maximum"] = json!(most);
+                }
+                schema
+            },
+            |reader, name| reader.whole_number(name, [least, most]),
+        )
     }
 
     /// Three numbers.
@@ -241,6 +246,21 @@ impl<'f, 'a, 'b> Field<'f, 'a, 'b> {
         self.take(
             |schema| words.component(schema),
             |reader, name| reader.word(name, &words.all()).map(|chosen| words.words[chosen].meaning),
+        )
+    }
+
+    /// Words out of several, one or more, none of them twice.
+    pub fn several<T: Copy>(self, words: &Words<T>) -> Option<Vec<T>> {
+        self.take(
+            |schema| {
+                let mut list = schema::list(&words.component(schema), [1, words.words.len()]);
+                list["uniqueItems"] = json!(true);
+                list
+            },
+            |reader, name| {
+                let chosen = reader.words(name, &words.all())?;
+                Some(chosen.into_iter().map(|index| words.words[index].meaning).collect())
+            },
         )
     }
 

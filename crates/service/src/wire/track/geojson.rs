@@ -112,6 +112,15 @@ fn from_pole(vertex: &Vertex) -> f64 {
     90.0 - vertex.latitude.abs()
 }
 
+/// The parts of a line on the map, given by longitudes and latitudes in degrees: cut at the antimeridian, and led over poles by way of them.
+pub(in crate::wire) fn line_parts(places: impl Iterator<Item = [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+    let vertex = |[longitude, latitude]: [f64; 2]| Vertex { time: 0.0, longitude, latitude, altitude: 0.0 };
+    let vertices: Vec<_> = places.map(vertex).collect();
+    let parts = cut(&by_way_of_poles(&vertices));
+    let place = |vertex: &Vertex| [vertex.longitude, vertex.latitude];
+    parts.iter().map(|part| part.iter().map(place).collect()).collect()
+}
+
 /// The parts between the crossings of the antimeridian, the shorter way around; each begins and ends on it where it was cut.
 ///
 /// A flight that ends where it starts is no line, and has none.

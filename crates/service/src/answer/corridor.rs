@@ -1,0 +1,79 @@
+//! A corridor: flights with many values of a number.
+
+use reentry::Interrupt;
+use reentry::solve::corridor::{Asked, Corridor, Edge, Sample, corridor as divide};
+use serde_json::Value;
+
+use super::search::{Flight, Flights};
+use super::{Answer, HeldMemory, Work, Written};
+use crate::error::ApiError;
+use crate::wire::corridor::{CorridorFlight, CorridorRequest, CorridorResponse, Limit, LimitGroup};
+
+/// Finds the values of a number with which flights keep limits; `interrupt` ends it early, wherever it is.
+///
+/// # Errors
+/// When the request is not sound, or is interrupted.
+pub fn corridor(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiError> {
+    let mut asked = CorridorRequest::try_from_tree(tree).map_err(ApiError::Invalid)?;
+    let mut flights = Flights::new(interrupt, None);
+    let (between, resolution, limits) = (asked.varied.between, asked.resolution, asked.limits);
+    let groups = &mut asked.groups;
+    let judge = |value: f64, asked: Asked| judge(groups, (value, asked), limits, &mut flights, interrupt);
+    let found: Corridor = divide(between, resolution, judge)?;
+    let mut flights_of = |edge: &Edge| {
+        let mut flight = |group: &mut LimitGroup| {
+            let limits = group.limits.iter().map(|(index, _)| *index).collect();
+            let summary = flights.summary(&mut group.case, &[edge.value])?;
+            Ok(summary.map(|flight| CorridorFlight { limits, flight }))
+        };
+        asked.groups.iter_mut().filter_map(|group| flight(group).transpose()).collect::<Result<Vec<_>, ApiError>>()
+    };
+    let mut ends = Vec::with_capacity(found.bands.len());
+    for band in &found.bands {
+        ends.push([flights_of(&band.from)?, flights_of(&band.to)?]);
+    }
+    let response = CorridorResponse::new(asked, found, ends, flights.so_far());
+    let search = Some(if response.bands.is_empty() { "no_band" } else { "band" });
+    let mut out = Written::new(HeldMemory::nothing(interrupt));
+    let written = serde_json::to_writer(&mut out, &response);
+    Ok(Answer { body: out.whole(written)?, work: Work { search, ..flights.work() } })
+}
+
+/// Flies a value once for every group of limits of which one is asked for.
+fn judge(
+    groups: &mut [LimitGroup],
+    (value, asked): (f64, Asked),
+    limits: usize,
+    flights: &mut Flights,
+    interrupt: &dyn Interrupt,
+) -> Result<Sample, ApiError> {
+    let mut sample = Sample { value, numbers: vec![None; limits], margins: vec![None; limits], ends: Vec::new() };
+    for LimitGroup { case, extent, limits } in groups {
+        if !limits.iter().any(|(limit, _)| asked.has(*limit)) {
+            for (limit, _) in &*limits {
+                sample.margins[*limit] = Sample::NOT_ASKED;
+            }
+            continue;
+        }
+        let Flight::Finished(flown) = flights.fly(case, &[value], *extent)? else {
+            sample.ends.push(None);
+            continue;
+        };
+        let (known, flown) = *flown;
+        sample.ends.push(Some(flown.termination()));
+        for (index, limit) in limits {
+            match limit {
+                Limit::Ends(requirement) => {
+                    let is_kept = requirement.admits(flown.termination());
+                    sample.margins[*index] = Some(if is_kept { 1.0 } else { -1.0 });
+                }
+                Limit::Number(number) => {
+                    let reading = number.reading(&flown, &known, interrupt)?;
+                    sample.numbers[*index] = reading.shown;
+                    sample.margins[*index] = reading.searched.map(|value| number.searched().margin(value));
+                }
+            }
+        }
+    }
+    Ok(sample)
+}

@@ -1,0 +1,149 @@
+//! The flights of a search: flown, and counted.
+
+use std::time::Instant;
+
+use reentry::Interrupt;
+use reentry::integrate::Statistics;
+use reentry::simulate::{SimulationError, simulate};
+use reentry::solve::flight::{Extent, SearchFlight};
+
+use super::Work;
+use crate::error::ApiError;
+use crate::wire::columns::AvailableQuantities;
+use crate::wire::search::{FailedFlights, FlightSummary, FlightsOfSearch};
+use crate::wire::vary::MovingCase;
+
+/// What became of a flight.
+pub(super) enum Flight {
+    /// It is finished, and so much is known of it.
+    Finished(Box<(AvailableQuantities, SearchFlight)>),
+    /// It is of no sound case, or cannot be finished.
+    Failed,
+    /// The search must come to its end.
+    OutOfTime,
+}
+
+/// Whoever asked for a search that must come to its end in time.
+#[derive(Debug)]
+struct Limited<'a> {
+    interrupt: &'a dyn Interrupt,
+    until: Option<Instant>,
+}
+
+impl Interrupt for Limited<'_> {
+    fn is_raised(&self) -> bool {
+        self.interrupt.is_raised() || self.until.is_some_and(|until| Instant::now() >= until)
+    }
+
+    fn may_hold(&self, bytes: usize) -> bool {
+        self.interrupt.may_hold(bytes)
+    }
+}
+
+/// The flights of a search so far.
+pub(super) struct Flights<'a> {
+    interrupt: &'a dyn Interrupt,
+    /// When it must come to its end.
+    until: Option<Instant>,
+    start: Instant,
+    count: u64,
+    failed: Vec<FailedFlights>,
+    work: Work,
+}
+
+impl<'a> Flights<'a> {
+    pub(super) fn new(interrupt: &'a dyn Interrupt, until: Option<Instant>) -> Self {
+        Self { interrupt, until, start: Instant::now(), count: 0, failed: Vec::new(), work: Work::default() }
+    }
+
+    /// Flies a case with its numbers set.
+    ///
+    /// # Errors
+    /// When the flag is raised, or there is no memory.
+    pub(super) fn fly(&mut self, case: &mut MovingCase, values: &[f64], extent: Extent) -> Result<Flight, ApiError> {
+        self.begin();
+        let Some((known, scenario)) = case.scenario(values) else {
+            self.fail(ApiError::Invalid(Vec::new()).problem().kind);
+            return Ok(Flight::Failed);
+        };
+        let limited = Limited { interrupt: self.interrupt, until: self.until };
+        match SearchFlight::fly(&scenario, extent, &limited) {
+            Ok(flown) => {
+                self.took(flown.statistics());
+                Ok(Flight::Finished(Box::new((known, flown))))
+            }
+            Err(SimulationError::Interrupted { .. }) if !self.interrupt.is_raised() => Ok(Flight::OutOfTime),
+            Err(error) => self.failed(error).map(|()| Flight::Failed),
+        }
+    }
+
+    /// Counts a flight.
+    fn begin(&mut self) {
+        self.count += 1;
+        self.interrupt.begins_flight(self.count);
+    }
+
+    /// Counts a flight that failed.
+    ///
+    /// # Errors
+    /// When that is not for a reason of its own.
+    fn failed(&mut self, error: SimulationError) -> Result<(), ApiError> {
+        match error {
+            SimulationError::Interrupted { .. } | SimulationError::NoRoom { .. } => Err(error.into()),
+            _ => {
+                self.fail(ApiError::from(error).problem().kind);
+                Ok(())
+            }
+        }
+    }
+
+    /// Flies a case with its numbers set, whatever the time, and tells of its flight; none where that is no sound case, or the flight cannot be
+    /// finished.
+    ///
+    /// # Errors
+    /// When the flag is raised, or there is no memory.
+    pub(super) fn summary(&mut self, case: &mut MovingCase, values: &[f64]) -> Result<Option<FlightSummary>, ApiError> {
+        self.begin();
+        let Ok((request, scenario)) = case.read(values) else {
+            self.fail(ApiError::Invalid(Vec::new()).problem().kind);
+            return Ok(None);
+        };
+        let flight = match simulate(&scenario, self.interrupt) {
+            Ok(flight) => flight,
+            Err(error) => return self.failed(error).map(|()| None),
+        };
+        if !flight.measure_ground_track(self.interrupt) {
+            return Err(ApiError::Interrupted);
+        }
+        self.took(flight.statistics());
+        Ok(Some(FlightSummary::new(&request, &flight)))
+    }
+
+    fn took(&mut self, Statistics { steps, rejected_steps, evaluations }: Statistics) {
+        self.work.flights += 1;
+        self.work.steps += steps as u64;
+        self.work.rejected_steps += rejected_steps as u64;
+        self.work.evaluations += evaluations as u64;
+    }
+
+    fn fail(&mut self, kind: &'static str) {
+        match self.failed.iter_mut().find(|failed| failed.kind == kind) {
+            Some(failed) => failed.count += 1,
+            None => self.failed.push(FailedFlights { kind, count: 1 }),
+        }
+    }
+
+    /// What the search has taken so far.
+    pub(super) fn so_far(&self) -> FlightsOfSearch {
+        FlightsOfSearch {
+            flights: self.count,
+            failed: self.failed.clone(),
+            elapsed: self.start.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// What the flights cost.
+    pub(super) fn work(&self) -> Work {
+        self.work
+    }
+}
