@@ -35,8 +35,9 @@ $(PAGE): $(UI)/node_modules/.package-lock.json $(PAGE_SOURCES)
 $(UI)/node_modules/.package-lock.json: $(UI)/package-lock.json
 	cd $(UI) && npm ci --no-audit --no-fund
 
-# The Rust tests run unoptimised, with overflow checks; the live tests run the program as it is shipped. What leaves a processor idle goes
-# beside something else: the program is linked while the tests are compiled, and requests are made up while others wait.
+# The Rust tests run with overflow checks, and of the workspace the core alone is optimised; the live tests run the program as it is
+# shipped. What leaves a processor idle goes beside something else: the program is linked while the tests are compiled, and requests are
+# made up while others wait.
 test: browser $(VENV)/ready ui ## Run all tests
 	$(MAKE) --jobs=2 build compiled-tests
 	cd $(UI) && npm test
@@ -90,7 +91,7 @@ load: build ## Measure the service under load, beside one that computes without 
 
 # What it finds interesting stays in $(TARGET); `tests/fuzz/corpus` is what it begins with.
 fuzz: $(FUZZ) ## Try inputs that a fuzzer makes up, for SECONDS=60 a target
-	for target in parser simulate convert; do \
+	for target in parser simulate convert target corridor footprint; do \
 		mkdir -p $(TARGET)/fuzz/corpus/$$target && \
 		$(FUZZ) run --fuzz-dir tests/fuzz --target-dir $(TARGET)/fuzz --sanitizer $(SANITIZER) $$target \
 			$(TARGET)/fuzz/corpus/$$target tests/fuzz/corpus/$$target -- \

@@ -20,6 +20,8 @@ use reentry::simulate::{arrival, arrivals, simulate_with_bodies};
 use reentry::trajectory::Sampling;
 use reentry::verification::verify;
 use reentry::{Case, FlightPath, PlanetFixed, Scenario, Solver, Stop, simulate};
+use reentry_service::answer::{self, Answer};
+use reentry_service::format::Format;
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
 use reentry_tests::cases::thesis_cases;
@@ -40,6 +42,7 @@ fn main() {
     heating_and_events();
     ascents();
     number_types();
+    searches();
 }
 
 /// One flight at the default tolerance.
@@ -438,6 +441,28 @@ fn number_types() {
     line("its sensitivities, 5 by 12", derivatives, plain);
     line("its verification", verification, plain);
 }
+
+/// What the searches of the document's examples take.
+fn searches() {
+    println!("\n| search | flights | time |\n| --- | --- | --- |");
+    let target = |text: &str| answer::target(json::parse(text.as_bytes()).unwrap(), None, &NEVER).unwrap();
+    let corridor = |text: &str| answer::corridor(json::parse(text.as_bytes()).unwrap(), &NEVER).unwrap();
+    let footprint =
+        |text: &str| answer::footprint(json::parse(text.as_bytes()).unwrap(), Format::Json, None, &NEVER).unwrap();
+    for (name, text, search) in [
+        ("landing site", include_str!("../../openapi/examples/target.json"), &target as &dyn Fn(&str) -> Answer),
+        ("boundary values of TARGET", include_str!("../../openapi/examples/boundary_values.json"), &target),
+        ("corridor of a lunar return", include_str!("../../openapi/examples/corridor.json"), &corridor),
+        ("footprint by two bank angles", include_str!("../../openapi/examples/footprint.json"), &footprint),
+    ] {
+        let answer: Value = serde_json::from_slice(&search(text).body).unwrap();
+        let [seconds] = medians(SEARCHES, [&mut timed(|| search(black_box(text)))]);
+        println!("| {name} | {} | {:.1} ms |", answer["search"]["flights"], seconds * 1e3);
+    }
+}
+
+/// Rounds of a search, of which each has hundreds of flights.
+const SEARCHES: usize = 20;
 
 fn scenario(name: &str) -> Scenario {
     job(&thesis_request(name)).scenario

@@ -292,6 +292,68 @@ fn falls_are_found_where_they_first_happen() {
     check("far from zero", first_fall(|t| t + 7.0), None);
 }
 
+/// (5 - t) (20 + t + t²/10), as it is at t = 0 and was at t = -2.
+#[test]
+fn a_fall_along_a_cubic_is_predicted_where_it_is() {
+    let cubic = |time: f64| {
+        let time = Dual64::new(time, 1.0);
+        (-time + 5.0) * (time * time * 0.1 + time + 20.0)
+    };
+    let predicted = event::predicted_fall(cubic(0.0), Some((2.0, cubic(-2.0))), 10.0).unwrap();
+    near("the time", predicted.time, 5.0, 1e-12);
+    assert!(predicted.uncertainty > 0.01 && predicted.uncertainty < 1.5, "{predicted:?}");
+    // By the rate alone: 100 at -15 per second.
+    let straight = event::predicted_fall(cubic(0.0), None, 10.0).unwrap();
+    near("the time by the rate", straight.time, 100.0 / 15.0, 1e-12);
+    // It is too far, it has come, it rises.
+    assert_eq!(event::predicted_fall(cubic(0.0), None, 1.0), None);
+    assert_eq!(event::predicted_fall(cubic(5.0), None, 1.0), None);
+    assert_eq!(event::predicted_fall(-cubic(6.0), None, 1.0), None);
+}
+
+/// y' = cos t, and from every whole t on with another second derivative: of which the system tells, or not.
+struct Cornered {
+    tells: bool,
+}
+
+impl System<f64, 1> for Cornered {
+    fn derivative(&self, time: f64, _: &[f64; 1]) -> [f64; 1] {
+        let (whole, part) = (time.floor(), time.fract());
+        [time.cos() + 0.1 * part * (1.0 - part) * (whole * 1.7).sin()]
+    }
+}
+
+impl StepBounds<1> for Cornered {
+    fn magnitudes(&self) -> [f64; 1] {
+        [1.0]
+    }
+
+    fn time_to_corner(&self, time: f64, _: &[f64; 1], _: &[f64; 1], least: f64) -> f64 {
+        if self.tells { (time + least).ceil() - time } else { f64::INFINITY }
+    }
+}
+
+#[test]
+fn steps_that_are_rejected_for_a_corner_end_there() {
+    let fly = |tells: bool| {
+        let system = Cornered { tells };
+        let interrupt = AtomicBool::new(false);
+        let mut integrator = Integrator::new(&system, 0.0, [1.0], limits(1e-10, &interrupt));
+        while integrator.time() < 20.0 {
+            integrator.advance(&system, 20.0).unwrap();
+        }
+        // Of each parabola the integral is 1/60.
+        let exact = 1.0 + 20.0_f64.sin() + (0..20).map(|whole| (f64::from(whole) * 1.7).sin() / 60.0).sum::<f64>();
+        near("the end", integrator.state()[0], exact, 1e-8);
+        integrator.statistics()
+    };
+    let [told, not_told] = [true, false].map(fly);
+    assert!(told.evaluations * 2 < not_told.evaluations, "{told:?} of {not_told:?}");
+    assert!(told.rejected_steps * 2 < not_told.rejected_steps, "{told:?} of {not_told:?}");
+    // Less than one a corner: the next ones are not tried across.
+    assert!(told.rejected_steps < 20, "{told:?}");
+}
+
 #[test]
 fn maxima_are_found_inside_and_not_at_the_ends() {
     let maximum = |value: fn(Dual64) -> Dual64| {

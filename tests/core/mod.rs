@@ -1,6 +1,7 @@
 //! The physics of the core: each test against something independent.
 
 pub(crate) mod flights;
+mod footprint;
 pub(crate) mod rockets;
 
 mod analytic;
@@ -8,10 +9,12 @@ mod ascent;
 mod atmosphere;
 mod bodies;
 mod conversions;
+mod corridor;
 mod departures;
 mod dispersions;
 mod elsewhere;
 mod events;
+mod extremes;
 mod gas;
 mod gravity;
 mod ground_track;
@@ -32,4 +35,5 @@ mod sensitivities;
 mod starts;
 mod stiffness;
 mod tables;
+mod target;
 mod verification;

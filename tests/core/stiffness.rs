@@ -315,8 +315,8 @@ fn implicit_steps_are_followed_with_the_right_slopes() {
     let system = With(Swing(1e3));
     for step in along.iter().filter(|step| step.is_implicit()) {
         let follow = |state: Dual64| {
-            let jacobian = system.jacobian(step.start_time, &step.start);
-            follow_implicitly(&Swing(1e3), &jacobian, &[state], step.start_time, step.length())[0]
+            let jacobian = |time, state: &[f64; 1]| system.jacobian(time, state);
+            follow_implicitly(&Swing(1e3), jacobian, &[state], step.start_time, step.length())[0]
         };
         let followed = follow(Dual64::new(step.start[0], 1.0));
         near("the end", followed.re, step.end[0], 1e-12);

@@ -28,6 +28,41 @@ fn conversions_hold_on_their_corpus() {
 }
 
 #[test]
+fn targets_hold_on_their_corpus() {
+    let corpus = corpus("target");
+    many(corpus.iter().filter(|input| fuzzed::target(input)).count(), corpus.len());
+}
+
+#[test]
+fn corridors_hold_on_their_corpus() {
+    let corpus = corpus("corridor");
+    many(corpus.iter().filter(|input| fuzzed::corridor(input)).count(), corpus.len());
+}
+
+#[test]
+fn footprints_hold_on_their_corpus() {
+    let corpus = corpus("footprint");
+    many(corpus.iter().filter(|input| fuzzed::footprint(input)).count(), corpus.len());
+}
+
+#[test]
+fn random_searches_are_answered_or_refused() {
+    const CASES: u32 = 300;
+    let [targets, corridors, footprints] =
+        ["target", "corridor", "footprint"].map(|name| Mutator::new(&format!("/{name}"), name));
+    let answered = Cell::new(0);
+    proptest!(config(CASES), |(seed: u64)| {
+        let asked = [
+            fuzzed::target(targets.request(seed).to_string().as_bytes()),
+            fuzzed::corridor(corridors.request(seed).to_string().as_bytes()),
+            fuzzed::footprint(footprints.request(seed).to_string().as_bytes()),
+        ];
+        answered.set(answered.get() + asked.iter().filter(|answered| **answered).count());
+    });
+    many(answered.get(), 3 * CASES as usize);
+}
+
+#[test]
 fn random_requests_are_answered_or_refused() {
     const CASES: u32 = 1000;
     let (flights, conversions) = (Mutator::new("/simulate", "simulate"), Mutator::new("/convert", "convert"));

@@ -15,7 +15,8 @@ use serde_json::{Value, json};
 
 use crate::http::fields::{Kind, Need, fields};
 use crate::http::requests::{
-    ALTERNATIVES, KINDS, condition, conversion, event, flight, model, models, with, with_all, without,
+    ALTERNATIVES, KINDS, condition, conversion, corridor, event, flight, goals, limits, model, models, target, with,
+    with_all, without,
 };
 
 /// A validator of one of the document's schemas; OpenAPI 3.1 speaks JSON Schema 2020-12.
@@ -58,6 +59,13 @@ const ENDPOINTS: [(&str, &str, &str); 3] = [
     ("/convert", "ConvertRequest", "ConvertResponse"),
 ];
 
+/// Those that fly a case many times, and take the time for it.
+const SEARCHES: [(&str, &str, &str); 3] = [
+    ("/target", "TargetRequest", "TargetResponse"),
+    ("/corridor", "CorridorRequest", "CorridorResponse"),
+    ("/footprint", "FootprintRequest", "FootprintResponse"),
+];
+
 #[test]
 fn the_committed_document_is_that_of_the_service() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../openapi/openapi.json");
@@ -70,7 +78,7 @@ fn the_committed_document_is_that_of_the_service() {
 fn every_field_of_a_request_has_a_label_and_every_angle_says_so() {
     let document = document();
     let schemas = document["components"]["schemas"].as_object().unwrap();
-    let mut open = ENDPOINTS.map(|(_, request, _)| request.to_owned()).to_vec();
+    let mut open: Vec<_> = ENDPOINTS.iter().chain(&SEARCHES).map(|(_, request, _)| (*request).to_owned()).collect();
     let mut seen = BTreeSet::new();
     let mut angles = BTreeSet::new();
     let mut count = 0;
@@ -115,16 +123,21 @@ fn good_requests_and_every_example_file_are_valid() {
             is_valid(&schema, &request, &name);
         }
     }
+    for (path, request, _) in SEARCHES {
+        for (name, request_of) in shown(path) {
+            is_valid(&schema(request), &request_of, &name);
+        }
+    }
     let count = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../openapi/examples")).unwrap().count();
-    let shown: usize = ENDPOINTS.iter().map(|(path, ..)| shown(path).len()).sum();
+    let shown: usize = ENDPOINTS.iter().chain(&SEARCHES).map(|(path, ..)| shown(path).len()).sum();
     assert_eq!(shown, count + 21, "an example is not in the document");
 }
 
 #[test]
 fn every_way_of_output_and_every_optional_field_left_out_is_valid() {
-    for (path, request, _) in ENDPOINTS {
+    for (path, request, _) in ENDPOINTS.iter().chain(&SEARCHES) {
         let schema = schema(request);
-        for field in fields().iter().filter(|field| field.path == path) {
+        for field in fields().iter().filter(|field| field.path == *path) {
             is_valid(&schema, &field.request, &field.pointer);
             if field.need == Need::Optional {
                 is_valid(&schema, &without(&field.request, &field.pointer), &format!("without {}", field.pointer));
@@ -136,15 +149,15 @@ fn every_way_of_output_and_every_optional_field_left_out_is_valid() {
 /// Sorts what the schema accepts and the service refuses, or the other way round.
 struct Agreement {
     service: Service,
-    schemas: [(&'static str, Validator); 3],
+    schemas: Vec<(&'static str, Validator)>,
     count: usize,
     differences: BTreeSet<String>,
 }
 
 impl Agreement {
     fn new() -> Self {
-        let schemas = ENDPOINTS.map(|(path, request, _)| (path, schema(request)));
-        Self { service: Service::new(), schemas, count: 0, differences: BTreeSet::new() }
+        let schemas = ENDPOINTS.iter().chain(&SEARCHES).map(|(path, request, _)| (*path, schema(request)));
+        Self { service: Service::new(), schemas: schemas.collect(), count: 0, differences: BTreeSet::new() }
     }
 
     /// Both refuse the request.
@@ -171,7 +184,7 @@ impl Agreement {
     /// Both refuse the request, or both accept it, but for what the service refuses because of names that refer to each other, and what only
     /// the one that has a name has: a schema does not see that.
     async fn agree_but_for_names(&mut self, path: &str, request: &Value, what: &str) {
-        const OF_NAMES: [&str; 8] = [
+        const OF_NAMES: [&str; 9] = [
             "must be the name of",
             "must be unique",
             "is required: part",
@@ -180,6 +193,8 @@ impl Agreement {
             "must leave a part",
             "must be omitted: the parts of the vehicle",
             "requires the pressure of the air",
+            // No number of the case.
+            "must point to",
         ];
         let answer = self.service.post(path, request).await;
         let errors = answer.json()["errors"].as_array().cloned().unwrap_or_default();
@@ -628,6 +643,28 @@ async fn schema_and_service_agree_on_every_mutant_of_what_is_shown() {
     agreement.holds(2000);
 }
 
+/// Of what searches have beside their cases.
+#[tokio::test]
+async fn schema_and_service_agree_on_every_mutant_of_a_search() {
+    let mut agreement = Agreement::new();
+    for (path, request) in [("/target", target(goals())), ("/corridor", corridor(limits()))] {
+        is_valid(&schema(if path == "/target" { "TargetRequest" } else { "CorridorRequest" }), &request, path);
+        let own = ["/vary", "/achieve", "/limits", "/search", "/resolution"];
+        let is_own = |pointer: &String| own.iter().any(|start| pointer.starts_with(start));
+        for pointer in pointers(&request, "").into_iter().filter(is_own) {
+            for value in [json!(null), json!([]), json!({}), json!("13"), json!(true)] {
+                let what = format!("with {value} at {pointer}");
+                agreement.agree_but_for_names(path, &with(&request, &pointer, value), &what).await;
+            }
+            if !pointer.ends_with(|last: char| last.is_ascii_digit()) {
+                let what = format!("without {pointer}");
+                agreement.agree_but_for_names(path, &without(&request, &pointer), &what).await;
+            }
+        }
+    }
+    agreement.holds(400);
+}
+
 #[tokio::test]
 async fn answers_are_valid() {
     let service = Service::new();
@@ -639,6 +676,16 @@ async fn answers_are_valid() {
                 assert_eq!(answer.status, StatusCode::OK, "{name}");
                 is_valid(&schema, &answer.json(), &name);
             }
+        }
+    }
+    for (path, _, response) in SEARCHES {
+        for (name, request) in shown(path) {
+            let answer = service.post(path, &with(&request, "/echo", true)).await;
+            assert_eq!(answer.status, StatusCode::OK, "{name}");
+            is_valid(&schema(response), &answer.json(), &name);
+            let again = service.post(path, &answer.json()["case"]).await.json();
+            let found = |answer: &Value| json!([answer["solutions"], answer["bands"]]);
+            assert_eq!(found(&again), found(&answer.json()), "{name} once more");
         }
     }
     for state in [
@@ -656,7 +703,7 @@ async fn answers_are_valid() {
 
 #[tokio::test]
 async fn the_validation_is_valid() {
-    is_valid(&schema("Validation"), &Service::new().get("/validation").await.json(), "the validation");
+    is_valid(&schema("Validation"), &Service::patient().get("/validation").await.json(), "the validation");
 }
 
 /// And it says all of them: a field that the schema does not know would be valid too.
@@ -800,8 +847,8 @@ fn reached(document: &Value, value: &Value, names: &mut BTreeSet<String>) {
 fn every_object_of_a_request_is_closed_and_every_field_described() {
     let document = document();
     let mut names = BTreeSet::new();
-    for (path, ..) in ENDPOINTS {
-        reached(&document, &document["paths"][path]["post"]["requestBody"], &mut names);
+    for (path, ..) in ENDPOINTS.iter().chain(&SEARCHES) {
+        reached(document, &document["paths"][path]["post"]["requestBody"], &mut names);
     }
     assert!(names.len() > 15, "{names:?}");
     for name in names {

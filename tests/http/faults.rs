@@ -155,9 +155,17 @@ async fn an_unknown_name_is_refused_where_it_stands_and_told_the_known_ones() {
                 "/heating/convective" => "must be one of sutton_graves, detra_kemp_riddell, chapman, got ",
                 "/heating/convective/type" => "must be one of sutton_graves, got ",
                 "/heating/radiative" => "must be one of none, tauber_sutton, craig_lyne, got ",
-                "/sensitivities/of/0/quantity" => "must be one of time, altitude, radius, longitude, ",
-                "/sensitivities/of/0/at" => "must be one of end, start, peak, lowest, got ",
-                "/sensitivities/of/0/at/side" => "must be one of before, after, got ",
+                "/sensitivities/of/0/quantity"
+                | "/limits/0/quantity"
+                | "/limits/1/quantity"
+                | "/achieve/0/quantity"
+                | "/achieve/1/quantity" => "must be one of time, altitude, radius, longitude, ",
+                "/sensitivities/of/0/at" | "/limits/0/at" | "/limits/1/at" | "/achieve/0/at" | "/achieve/1/at" => {
+                    "must be one of end, start, peak, lowest, got "
+                }
+                "/sensitivities/of/0/at/side" | "/limits/1/at/side" | "/achieve/1/at/side" => {
+                    "must be one of before, after, got "
+                }
                 "/dispersions/0/offset/type" => "must be one of normal, multivariate_normal, got ",
                 "/events/0/when/quantity"
                 | "/stop/when/0/quantity"

@@ -1,10 +1,13 @@
-//! Every field of the two requests: where it stands, what it holds, and what it may be (the table of the API's contract).
+//! Every field of the requests: where it stands, what it holds, and what it may be (the table of the API's contract).
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use serde_json::{Value, json};
 
-use super::requests::{ALTERNATIVES, KINDS, condition, conversion, flight, model, models, with, without};
+use super::requests::{
+    ALTERNATIVES, KINDS, condition, conversion, corridor, flight, footprint, goals, limits, limits_alone, model,
+    models, target, with, without,
+};
 
 /// A field of a request.
 pub(crate) struct Field {
@@ -461,6 +464,86 @@ const FACTOR: [Row; 3] = [
     ("/dispersions/0/factor/covariance", Required, Matrix),
 ];
 
+/// A number that varies.
+const VARY: [Row; 6] = [
+    ("/pointer", Required, Text),
+    ("/between", Required, Numbers),
+    ("/scale", Optional, Number(POSITIVE)),
+    ("/also", Optional, Objects),
+    ("/also/0/pointer", Required, Text),
+    ("/also/0/factor", Optional, Number(FINITE)),
+];
+
+/// What limits and goals have in common: on quantities at moments, near a site, and of ends.
+const REQUIREMENTS: [Row; 14] = [
+    ("/0/quantity", Alternative, Name),
+    ("/0/at", Optional, NameOrObject),
+    ("/0/at_most", Alternative, Number(FINITE)),
+    ("/1/quantity", Alternative, Name),
+    ("/1/at/event", Alternative, Text),
+    ("/1/at/side", Optional, Name),
+    ("/1/at_least", Alternative, Number(FINITE)),
+    ("/2/at/time", Alternative, Number(TIME)),
+    ("/2/between", Alternative, Numbers),
+    ("/3/site", Alternative, TextOrObject),
+    ("/3/site/longitude", Required, Angle(TURN)),
+    ("/3/site/geodetic_latitude", Required, Angle(QUARTER)),
+    ("/4/termination", Alternative, Names),
+    ("/1/at", Optional, NameOrObject),
+];
+
+/// What only limits have.
+const LIMITS: [Row; 1] = [("/3/within", Required, Number(POSITIVE))];
+
+/// What only those of a corridor have.
+const LIMITS_OF_CORRIDORS: [Row; 1] = [("/0/with", Optional, Object)];
+
+/// What only goals have.
+const GOALS: [Row; 4] = [
+    ("/3/within", Optional, Number(POSITIVE)),
+    ("/3/tolerance", Optional, Number(POSITIVE)),
+    ("/5/equals", Alternative, Number(FINITE)),
+    ("/5/tolerance", Optional, Number(POSITIVE)),
+];
+
+const SEARCH: [Row; 5] = [
+    ("", Optional, Object),
+    ("/starts", Optional, Whole),
+    ("/solutions", Optional, Whole),
+    ("/flights", Optional, Whole),
+    ("/record", Optional, Boolean),
+];
+
+/// The fields of a search, by the place.
+type Places = [(&'static str, &'static [Row]); 5];
+
+/// What a corridor has beside its case.
+const OF_CORRIDORS: Places = [
+    ("", &[("/vary", Required, Object), ("/limits", Required, Objects), ("/resolution", Optional, Number(POSITIVE))]),
+    ("/vary", &VARY),
+    ("/limits", &REQUIREMENTS),
+    ("/limits", &LIMITS),
+    ("/limits", &LIMITS_OF_CORRIDORS),
+];
+
+/// The same of a footprint.
+const OF_FOOTPRINTS: Places = [
+    ("", &[("/vary", Required, Objects), ("/limits", Optional, Objects), ("/resolution", Optional, Number(POSITIVE))]),
+    ("/vary/0", &VARY),
+    ("/limits", &REQUIREMENTS),
+    ("/limits", &LIMITS),
+    ("/search", &[("", Optional, Object), ("/flights", Optional, Whole)]),
+];
+
+/// The same of a target.
+const OF_TARGETS: Places = [
+    ("", &[("/vary", Required, Objects), ("/achieve", Required, Objects)]),
+    ("/vary/0", &VARY),
+    ("/achieve", &REQUIREMENTS),
+    ("/achieve", &GOALS),
+    ("/search", &SEARCH),
+];
+
 /// What a condition may wait for, and the values that it may pass.
 pub(crate) const QUANTITIES: [(&str, Kind); 22] = [
     ("time", Number(TIME)),
@@ -537,7 +620,16 @@ fn other_kind(name: &str) -> Kind {
     }
 }
 
-/// Every field of both requests, with every kind of state.
+/// A good request of every search, and what it has beside its case.
+fn searches() -> [(&'static str, Value, Places); 3] {
+    [
+        ("/corridor", corridor(limits()), OF_CORRIDORS),
+        ("/footprint", footprint(limits_alone()), OF_FOOTPRINTS),
+        ("/target", target(goals()), OF_TARGETS),
+    ]
+}
+
+/// Every field of the requests, with every kind of state. Of searches those that are not of their case.
 pub(crate) fn fields() -> Vec<Field> {
     let mut fields = Vec::new();
     let mut add = |path, request: &Value, place: &str, rows: &[Row]| {
@@ -584,6 +676,12 @@ pub(crate) fn fields() -> Vec<Field> {
         let request =
             given.iter().fold(flight("geodetic"), |request, (place, value)| with(&request, place, value.clone()));
         add("/simulate", &request, "", rows);
+    }
+
+    for (path, request, places) in searches() {
+        for (place, rows) in places {
+            add(path, &request, place, rows);
+        }
     }
 
     for (quantity, kind) in QUANTITIES {

@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use tower::ServiceExt;
 
 use super::problems::{endless, free_again};
-use super::requests::{capsule, with};
+use super::requests::{capsule, with, with_all};
 
 /// Every line of the metrics: name with labels, and value.
 async fn metrics(service: &Service) -> BTreeMap<String, f64> {
@@ -85,6 +85,7 @@ async fn what_a_flight_costs_is_what_its_answer_says() {
     let of = |name: &str| count(&metrics, &format!("reentry_{name}{{route=\"/simulate\"}}"));
     let said = |name: &str| solver[name].as_f64().unwrap();
     assert!(said("steps") > 10.0);
+    assert_eq!(of("flights_total"), 1.0);
     assert_eq!(of("integration_steps_total"), said("steps"));
     assert_eq!(of("integration_steps_rejected_total"), said("rejected_steps"));
     assert_eq!(of("evaluations_total"), said("evaluations"));
@@ -110,6 +111,48 @@ async fn the_cases_of_a_batch_are_counted_by_outcome() {
     assert_eq!(count(&metrics, "reentry_batch_cases_total{outcome=\"invalid-case\"}"), 1.0);
     let steps = lines[0]["solver"]["steps"].as_f64().unwrap();
     assert_eq!(count(&metrics, "reentry_integration_steps_total{route=\"/simulate/batch\"}"), 2.0 * steps);
+}
+
+#[tokio::test]
+async fn searches_are_counted_by_route_and_outcome_with_their_flights() {
+    let service = Service::new();
+    let falling = with(&capsule(), "/angle_unit", "deg");
+    let varied = |least: f64| json!({"pointer": "/initial_state/flight_path_angle", "between": [least, -0.04]});
+    let target = |load: f64, flights: u32| {
+        with_all(
+            &falling,
+            [
+                ("/vary", json!([varied(-3.0)])),
+                ("/achieve", json!([{"quantity": "load_factor", "at": "peak", "equals": load, "tolerance": 0.01}])),
+                ("/search", json!({"starts": 4, "flights": flights})),
+            ],
+        )
+    };
+    let corridor = |most: f64| {
+        let limits = json!([{"quantity": "load_factor", "at": "peak", "at_most": most}]);
+        with_all(&falling, [("/vary", varied(-3.0)), ("/limits", limits), ("/resolution", json!(0.1))])
+    };
+    let mut flights = [0.0, 0.0];
+    for (path, request, outcome, index) in [
+        ("/target", target(9.0, 500), "reached", 0),
+        ("/target", target(9e3, 500), "not_reached", 0),
+        ("/target", target(9.0, 2), "out_of_budget", 0),
+        ("/corridor", corridor(9.0), "band", 1),
+        ("/corridor", corridor(0.0), "no_band", 1),
+    ] {
+        let answer = service.post(path, &request).await.json();
+        assert!(index == 1 || answer["outcome"] == outcome, "{answer}");
+        flights[index] += answer["search"]["flights"].as_f64().unwrap();
+        let name = format!("reentry_searches_total{{route=\"{path}\",outcome=\"{outcome}\"}}");
+        assert_eq!(count(&metrics(&service).await, &name), 1.0);
+    }
+    // A search that is refused is none.
+    service.post("/target", &json!({})).await;
+    let metrics = metrics(&service).await;
+    assert_eq!(metrics.keys().filter(|name| name.starts_with("reentry_searches_total")).count(), 5);
+    for (path, flights) in ["/target", "/corridor"].into_iter().zip(flights) {
+        assert_eq!(count(&metrics, &format!("reentry_flights_total{{route=\"{path}\"}}")), flights);
+    }
 }
 
 /// A service with one worker, and what it counts.

@@ -36,6 +36,7 @@ mod output;
 mod page;
 mod planets;
 mod reference;
+mod searches;
 mod sensitivities;
 mod sidereal_time;
 mod simulate;

@@ -276,7 +276,7 @@ async fn the_pages_around_the_endpoints_are_served() {
 
     let document = service.get("/openapi.json").await;
     assert_eq!(document.headers[header::CONTENT_TYPE], "application/json");
-    assert_eq!(document.json(), reentry_service::document());
+    assert_eq!(document.json(), *reentry_service::document());
 }
 
 #[tokio::test]

@@ -105,6 +105,21 @@ fn unsound(answer: &Answer) -> Option<String> {
                     *value = json!(0);
                 }
             }
+            // What a search does not come to, of requirements and of flights.
+            for place in ["/solutions", "/nearest", "/reach", "/bands", "/samples"] {
+                if let Some(value) = answer.pointer_mut(place) {
+                    *value = json!(0);
+                }
+            }
+            // What a footprint has none of; what it has is finite.
+            let extremes = ["crossrange/0", "crossrange/1", "downrange/0", "downrange/1"];
+            let of_footprints = extremes.map(|end| format!("/extent/{end}"));
+            let of_footprints = of_footprints.into_iter().chain(["/curve", "/landing", "/error"].map(str::to_owned));
+            for place in of_footprints {
+                if let Some(value) = answer.pointer_mut(&place).filter(|value| value.is_null()) {
+                    *value = json!(0);
+                }
+            }
             // What leaves the vehicle leaves no other body.
             if let Some(bodies) = answer.pointer_mut("/bodies").and_then(Value::as_array_mut) {
                 for body in bodies {

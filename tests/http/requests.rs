@@ -386,6 +386,68 @@ fn everything_changes() -> Value {
     with(&event("altitude", "falls_through", 89_950.0, &then), "/name", "all at once")
 }
 
+/// A search for a target over a second of flight, of few flights, with every field of a search; with the goals given.
+pub(crate) fn target(achieve: Value) -> Value {
+    let speed = json!({
+        "pointer": "/initial_state/speed", "between": [6900, 7100], "scale": 10,
+        "also": [{"pointer": "/vehicle/mass", "factor": 0.1}],
+    });
+    with_all(
+        &flight("geodetic"),
+        [
+            ("/events", json!([named("first")])),
+            ("/vary", json!([speed])),
+            ("/achieve", achieve),
+            ("/search", json!({"starts": 4, "solutions": 2, "flights": 40, "record": false})),
+        ],
+    )
+}
+
+/// A corridor of a second of flight, with every field of it; with the limits given.
+pub(crate) fn corridor(limits: Value) -> Value {
+    let speed = json!({
+        "pointer": "/initial_state/speed", "between": [6900, 7100], "scale": 10,
+        "also": [{"pointer": "/wind/east", "factor": 1e-3}],
+    });
+    with_all(
+        &flight("geodetic"),
+        [("/events", json!([named("first")])), ("/vary", speed), ("/limits", limits), ("/resolution", json!(1))],
+    )
+}
+
+/// A footprint of a second of flight, with every field of it; with the limits given.
+pub(crate) fn footprint(limits: Value) -> Value {
+    let search = json!({"flights": 40});
+    let of_target = without(&with(&target(goals()), "/limits", limits), "/achieve");
+    with_all(&of_target, [("/resolution", json!(1)), ("/search", search)])
+}
+
+/// What flights of [`target`] and [`corridor`] keep: a limit of each kind, at each kind of moment.
+pub(crate) fn limits() -> Value {
+    json!([
+        {"quantity": "load_factor", "at": "peak", "at_most": 0.5, "with": {"/control/bank_angle": 0}},
+        {"quantity": "altitude", "at": {"event": "first", "side": "after"}, "at_least": 1e3},
+        {"quantity": "altitude", "at": {"time": 0.5}, "between": [1e3, 1e5]},
+        {"site": {"longitude": 0.7, "geodetic_latitude": -0.4}, "within": 1e5},
+        {"termination": ["time_limit"]},
+    ])
+}
+
+/// The same, each flown with the case as it is.
+pub(crate) fn limits_alone() -> Value {
+    let mut limits = limits();
+    limits[0].as_object_mut().unwrap().shift_remove("with");
+    limits
+}
+
+/// The same, as goals, and one to be met.
+pub(crate) fn goals() -> Value {
+    let mut goals = limits_alone();
+    goals[3]["tolerance"] = json!(1);
+    goals.as_array_mut().unwrap().push(json!({"quantity": "speed", "equals": 7000, "tolerance": 1e-3}));
+    goals
+}
+
 /// The least that can be flown: a capsule from 120 km.
 pub(crate) fn capsule() -> Value {
     json!({
@@ -404,13 +466,18 @@ fn planet() -> Value {
         "polar_radius": 6.357e6, "rotation_rate": 7.3e-5, "gravity": {"type": "zonal", "degree": 2, "j2": 1.08e-3}})
 }
 
+/// The name of a member that a token of a pointer names.
+fn unescaped(token: &str) -> String {
+    token.replace("~1", "/").replace("~0", "~")
+}
+
 /// The request with the value at the pointer, whose parent must be there.
 pub(crate) fn with(request: &Value, pointer: &str, value: impl Into<Value>) -> Value {
     let mut request = request.clone();
     let (parent, name) = pointer.rsplit_once('/').unwrap();
     match request.pointer_mut(parent) {
         Some(Value::Object(map)) => {
-            map.insert(name.to_owned(), value.into());
+            map.insert(unescaped(name), value.into());
         }
         Some(Value::Array(array)) => array[name.parse::<usize>().unwrap()] = value.into(),
         _ => panic!("there is nothing at {parent}"),
@@ -427,7 +494,8 @@ pub(crate) fn with_all<const N: usize>(request: &Value, changes: [(&str, Value);
 pub(crate) fn without(request: &Value, pointer: &str) -> Value {
     let mut request = request.clone();
     let (parent, name) = pointer.rsplit_once('/').unwrap();
-    let removed = request.pointer_mut(parent).and_then(Value::as_object_mut).and_then(|map| map.shift_remove(name));
+    let removed =
+        request.pointer_mut(parent).and_then(Value::as_object_mut).and_then(|map| map.shift_remove(&unescaped(name)));
     assert!(removed.is_some(), "there is nothing at {pointer}");
     request
 }

@@ -189,6 +189,23 @@ async fn the_echo_flown_again_gives_the_same_answer() {
     }
 }
 
+/// What `cargo run --package reentry-tests --example steps` has for these, and a little more.
+#[tokio::test]
+async fn the_examples_take_few_evaluations() {
+    for (name, evaluations, rejected) in [
+        ("deorbit", 1800, 14),
+        ("lifting_capsule", 2400, 36),
+        ("sample_return", 1850, 14),
+        ("mars", 850, 12),
+        ("titan", 700, 13),
+    ] {
+        let file = format!("{}/../openapi/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let solver = fly(&reentry_tests::cases::read_json(file.as_ref())).await["solver"].clone();
+        assert!(solver["evaluations"].as_u64().unwrap() <= evaluations, "{name}: {solver}");
+        assert!(solver["rejected_steps"].as_u64().unwrap() <= rejected, "{name}: {solver}");
+    }
+}
+
 #[tokio::test]
 async fn numbers_are_echoed_as_sent() {
     let body = with_all(&capsule(), [("/echo", json!(true)), ("/vehicle/mass", json!("MASS"))]).to_string();

@@ -16,7 +16,7 @@ from conftest import PATIENCE
 CASES = Path(__file__).parents[1] / "cases/thesis"
 OPENAPI = Path(__file__).parents[2] / "openapi"
 OPERATIONS = {
-    "reentry": ["analytic", "convert", "licences", "planets", "simulate", "simulate_batch", "sites", "validation"],
+    "reentry": ["analytic", "convert", "corridor", "footprint", "licences", "planets", "simulate", "simulate_batch", "sites", "target", "validation"],
     "health": ["live", "metrics", "ready"],
 }
 
@@ -70,7 +70,8 @@ def reentry(service, package):
 @pytest.mark.parametrize("path", sorted((OPENAPI / "examples").glob("*.json")), ids=lambda path: path.stem)
 def test_every_example_is_a_typed_request(reentry, path):
     tree = json.loads(path.read_text())
-    kind = "ConvertRequest" if "state" in tree else "AnalyticRequest" if "solution" in tree else "SimulateRequest"
+    kinds = {"state": "Convert", "solution": "Analytic", "achieve": "Target", "resolution": "Footprint", "limits": "Corridor"}
+    kind = next((kind for field, kind in kinds.items() if field in tree), "Simulate") + "Request"
     # It writes Z as an offset, and seconds to the microsecond.
     again = json.dumps(getattr(reentry.models, kind).from_dict(tree).to_dict()).replace("+00:00", "Z")
     again = re.sub(r"(\.\d{3})000Z", r"\1Z", again)

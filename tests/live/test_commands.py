@@ -280,6 +280,12 @@ def test_a_terminal_sees_how_far_it_is(file):
     assert "cases" not in on_a_terminal("simulate", TARGET, stdout=subprocess.DEVNULL)
 
 
+def test_a_terminal_sees_how_many_flights_a_search_has_flown():
+    corridor = str(EXAMPLES / "corridor.json")
+    assert re.search(r"[1-9][0-9]* flights, ", on_a_terminal("corridor", corridor, stdout=subprocess.DEVNULL))
+    assert run("corridor", corridor).stderr == ""
+
+
 def test_the_health_of_a_service_is_asked(start):
     service = start("--workers", "1", "--queue", "0", "--deadline", "60")
     # Every address: 127.0.0.1 among them.

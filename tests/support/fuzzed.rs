@@ -2,9 +2,10 @@
 
 use std::fmt::Debug;
 use std::sync::LazyLock;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use jsonschema::Validator;
+use reentry::Interrupt;
 use reentry::scenario::{Bound, Case, Scenario, Solver};
 use reentry::simulate::{SimulationError, arrival};
 use reentry_service::error::ApiError;
@@ -19,6 +20,11 @@ use serde_json::{Value, json};
 const ROW_LIMIT: usize = 64;
 /// Steps of the flights that are looked at here; the long ones are left to the tests of the deadline.
 const STEP_LIMIT: usize = 300;
+
+/// Flights of a target and of a footprint here.
+const MOST_FLIGHTS: f64 = 40.0;
+/// Steps of all flights of a search that is looked at here.
+const MOST_STEPS_OF_SEARCH: usize = 10_000;
 
 /// Nobody raises it.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -168,6 +174,148 @@ pub fn convert(text: &[u8]) -> bool {
     true
 }
 
+/// A request for a target, of few flights: the answer is good, and its solutions are cases that can be sent to `/simulate`; or the request is
+/// refused, and its faults are named. True where it is answered.
+///
+/// # Panics
+/// When that does not hold.
+pub fn target(text: &[u8]) -> bool {
+    let Ok(tree) = parse(text) else { return false };
+    let tree = of_few_flights(tree);
+    let Some(answer) = searched(&TARGET, &tree, |tree, interrupt| answer::target(tree, None, interrupt)) else {
+        return false;
+    };
+    let solutions = answer["solutions"].as_array().map_or(&[][..], Vec::as_slice);
+    assert_eq!(answer["outcome"] == "reached", !solutions.is_empty(), "{tree}");
+    for solution in solutions.iter().chain(Some(&answer["nearest"]).filter(|nearest| !nearest.is_null())) {
+        let case = FlightRequest::try_from_tree(solution["case"].clone(), RequestedOutput::Answer);
+        assert!(case.is_ok(), "{} is no case, of {tree}", solution["case"]);
+    }
+    true
+}
+
+/// A request for a corridor: the answer is good, and its bands and gaps cover the range in turn; or the request is refused, and its faults are
+/// named. True where it is answered.
+///
+/// # Panics
+/// When that does not hold.
+pub fn corridor(text: &[u8]) -> bool {
+    let Ok(tree) = parse(text) else { return false };
+    let Some(answer) = searched(&CORRIDOR, &tree, answer::corridor) else { return false };
+    let parts = ["bands", "gaps"].map(|parts| answer[parts].as_array().map_or(&[][..], Vec::as_slice));
+    let mut parts = parts.concat();
+    let end = |part: &Value, end: &str| part[end].as_f64().unwrap_or(f64::NAN);
+    parts.sort_by(|one, other| end(one, "from").total_cmp(&end(other, "from")));
+    let [least, greatest] = [0, 1].map(|index| tree["vary"]["between"][index].as_f64().unwrap_or(f64::NAN));
+    // Beyond the end of a band lies the first value that was flown there.
+    let ends: Vec<f64> = parts.iter().flat_map(|part| [end(part, "from"), end(part, "to")]).collect();
+    assert!(ends.is_sorted() && ends.first() == Some(&least) && ends.last() == Some(&greatest), "{ends:?} of {tree}");
+    assert_eq!(answer["bands"].as_array().is_some_and(Vec::is_empty), !answer["nearest"].is_null(), "{tree}");
+    true
+}
+
+/// A request for a footprint, of few flights: the answer is good, its rings are closed and lie on the map, and its points lie within its extent; or
+/// the request is refused, and its faults are named. True where it is answered.
+///
+/// # Panics
+/// When that does not hold.
+pub fn footprint(text: &[u8]) -> bool {
+    let Ok(tree) = parse(text) else { return false };
+    let tree = of_few_flights(tree);
+    let Some(answer) = searched(&FOOTPRINT, &tree, drawn(Format::Json)) else { return false };
+    let of = |list: &Value| list.as_array().cloned().unwrap_or_default();
+    let polygons = of(&answer["boundary"]["coordinates"]);
+    for ring in polygons.iter().flat_map(of) {
+        let places: Vec<_> = of(&ring).iter().map(numbers).collect();
+        assert!(places.len() > 3 && places.first() == places.last(), "{places:?} is no ring, of {tree}");
+        let on_the_map = |place: &Vec<f64>| place[0].abs() <= 180.0 && place[1].abs() <= 90.0;
+        assert!(places.iter().all(on_the_map), "{places:?} leave the map, of {tree}");
+    }
+    // A piece that the antimeridian cuts is more than one polygon.
+    let [pieces, area, landed, kept] =
+        ["pieces", "area", "landed", "within_limits"].map(|name| answer[name].as_f64().unwrap_or(f64::NAN));
+    assert!(
+        pieces <= count(polygons.len()) && (area > 0.0) == (pieces > 0.0),
+        "{pieces} pieces of {area} m², of {tree}"
+    );
+    assert!(0.0 <= kept && kept <= landed && landed <= 1.0, "{kept} of {landed}, of {tree}");
+    let points = &answer["points"];
+    let columns = ["longitude", "geodetic_latitude", "downrange", "crossrange", "within_limits"];
+    let lengths: Vec<_> =
+        columns.iter().map(|name| &points[name]).chain(&of(&points["values"])).map(|column| of(column).len()).collect();
+    assert!(lengths.windows(2).all(|pair| pair[0] == pair[1]), "{lengths:?} of {tree}");
+    for name in ["downrange", "crossrange"] {
+        let [least, greatest] = [0, 1].map(|end| answer["extent"][name][end]["value"].as_f64());
+        let (least, greatest) = (least.unwrap_or(f64::NEG_INFINITY), greatest.unwrap_or(f64::INFINITY));
+        for (place, within) in of(&points[name]).iter().zip(of(&points["within_limits"])) {
+            let beyond = place.as_f64().is_some_and(|place| place < least || greatest < place);
+            assert!(within != json!(true) || !beyond, "{name} {place} is beyond {least} and {greatest}, of {tree}");
+        }
+    }
+    if let Ok(map) = drawn(Format::Geojson)(tree.clone(), &Steps::default()) {
+        assert_eq!(strict(&map.body, &tree)["type"], "FeatureCollection", "{tree}");
+    }
+    true
+}
+
+fn drawn(format: Format) -> impl Fn(Value, &dyn Interrupt) -> Result<answer::Answer, ApiError> {
+    move |tree, interrupt| answer::footprint(tree, format, None, interrupt)
+}
+
+/// A request for a search, of as few flights as are looked at here.
+fn of_few_flights(mut tree: Value) -> Value {
+    if let Some(members) = tree.as_object_mut()
+        && let Some(search) = members.entry("search").or_insert_with(|| json!({})).as_object_mut()
+        && search.get("flights").is_none_or(|flights| flights.as_f64().is_some_and(|count| count > MOST_FLIGHTS))
+    {
+        search.insert("flights".to_owned(), json!(MOST_FLIGHTS));
+    }
+    tree
+}
+
+fn count(length: usize) -> f64 {
+    f64::from(u32::try_from(length).unwrap_or(u32::MAX))
+}
+
+/// The answer to a search, if it has one and that is good: the same again, of the request with its defaults.
+fn searched(
+    schema: &Validator,
+    tree: &Value,
+    answer: impl Fn(Value, &dyn Interrupt) -> Result<answer::Answer, ApiError>,
+) -> Option<Value> {
+    let answered = |tree: Value| answer(tree, &Steps::default());
+    let shown = match answered(tree.clone()) {
+        Ok(answer) => strict(&answer.body, tree),
+        Err(error) => {
+            // What takes many steps is left to the tests of the deadline.
+            if !matches!(error, ApiError::Interrupted | ApiError::Flight(_)) {
+                refused(&error, tree);
+            }
+            return None;
+        }
+    };
+    valid(schema, &shown, tree);
+    if let Some(case) = shown.get("case") {
+        let again = strict(&good(answered(case.clone()), tree).body, tree);
+        let [again, shown] = [again, shown.clone()].map(|mut answer| {
+            answer["search"]["elapsed"] = Value::Null;
+            without_warnings_of_defaults(answer)
+        });
+        assert_eq!(again, shown, "{tree}");
+    }
+    Some(shown)
+}
+
+/// Counts steps, and ends a search that takes many.
+#[derive(Debug, Default)]
+struct Steps(AtomicUsize);
+
+impl Interrupt for Steps {
+    fn is_raised(&self) -> bool {
+        self.0.fetch_add(1, Ordering::Relaxed) >= MOST_STEPS_OF_SEARCH
+    }
+}
+
 fn converted(tree: Value) -> Result<Vec<u8>, ApiError> {
     answer::convert(tree, &NEVER).map(|answer| answer.body)
 }
@@ -252,6 +400,9 @@ impl Endpoint {
 static SIMULATE: LazyLock<Validator> = LazyLock::new(|| schema("SimulateResponse"));
 static ANALYTIC: LazyLock<Validator> = LazyLock::new(|| schema("AnalyticResponse"));
 static CONVERT: LazyLock<Validator> = LazyLock::new(|| schema("ConvertResponse"));
+static TARGET: LazyLock<Validator> = LazyLock::new(|| schema("TargetResponse"));
+static CORRIDOR: LazyLock<Validator> = LazyLock::new(|| schema("CorridorResponse"));
+static FOOTPRINT: LazyLock<Validator> = LazyLock::new(|| schema("FootprintResponse"));
 static PROBLEM: LazyLock<Validator> = LazyLock::new(|| schema("Problem"));
 
 fn schema(name: &str) -> Validator {

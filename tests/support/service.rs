@@ -1,6 +1,7 @@
 //! The service, called as a function: the whole router, no socket.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::body::{Body, Bytes};
@@ -34,6 +35,11 @@ impl Service {
     /// A service with the settings of `reentry serve`.
     pub fn new() -> Self {
         Self::with(Config::default())
+    }
+
+    /// The same with a minute for a request, for tests of what takes a while on a busy machine and not of how long it takes.
+    pub fn patient() -> Self {
+        Self::with(Config { deadline: Duration::from_mins(1), ..Config::default() })
     }
 
     /// A service with other settings.
