@@ -254,7 +254,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.control.length
     }
 
-    /// The next step ends at a time, s, if it would go beyond: where something is predicted that will cut it.
+    /// The next step ends at a time, s, if it would go beyond, or nearly as far: where something is predicted that will cut it.
     pub(crate) fn aim_at(&mut self, time: f64) {
         self.control.aim_at(time);
     }

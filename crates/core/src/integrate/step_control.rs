@@ -19,7 +19,7 @@ pub(super) struct StepControl<'a, const N: usize> {
     stride: f64,
     /// By how much the next accepted step may lengthen it: not at all after a rejected one.
     growth: f64,
-    /// Where the next step ends if it would go beyond, s.
+    /// Where the next step ends if it would go beyond, or nearly as far, s.
     aim: f64,
     /// Of the last accepted step, as a multiple of the tolerance.
     pub(super) error: f64,
@@ -131,12 +131,10 @@ impl<'a, const N: usize> StepControl<'a, N> {
         if self.statistics.steps + self.statistics.rejected_steps >= limit {
             return Err(IntegrationError::StepLimit { time, limit });
         }
-        // A remainder below one per cent of a step is taken along.
-        let last = time + self.length * 1.01 >= end;
-        let trial_end = if last { end } else { time + self.length };
-        let is_aimed = self.aim < trial_end;
-        let trial_end = if is_aimed { self.aim } else { trial_end };
-        self.stride = if last || is_aimed { self.length } else { 0.0 };
+        let aim = self.aim.min(end);
+        let is_aimed = aim <= time + self.length * LONGEST_AIMED_STEP;
+        let trial_end = if is_aimed { aim } else { time + self.length };
+        self.stride = if is_aimed { self.length } else { 0.0 };
         self.length = trial_end - time;
         if self.length.is_nan() || self.length <= LEAST_LENGTH * end {
             return Err(IntegrationError::StepTooSmall { time });
@@ -162,7 +160,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
         self.stiffness = Stiffness::default();
     }
 
-    /// The next step ends at a time, s, if it would go beyond.
+    /// The next step ends at a time, s, if it would go beyond, or nearly as far.
     pub(super) fn aim_at(&mut self, time: f64) {
         self.aim = self.aim.min(time);
     }
@@ -336,6 +334,9 @@ const SIGNIFICANT_ERROR_OF_CUT_STEPS: f64 = 1e-2;
 const LONGEST_FIRST_STEP: f64 = 0.1;
 /// A part of the rates of change; a jump by more makes a new start.
 const JUMP: f64 = 0.03;
+/// A step that would end just before a given end is made so many times as long, to end there: what was left would cost a step of its own. The error,
+/// which aims at 0.43 of the tolerance, becomes 0.74 of it.
+const LONGEST_AIMED_STEP: f64 = 1.07;
 /// Up to this part of a step a corner of the rates is within it, and not at its end.
 const AT_END: f64 = 0.95;
 /// So many steps end at corners before one is tried across.

@@ -247,9 +247,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if let Some(PredictedCrossing { time, uncertainty }) = PredictedCrossing::first(predicted.into_iter().flatten())
         {
             let way = time + AIM_BEYOND * time + 0.5 * uncertainty.min(GREATEST_UNCERTAINTY * time);
-            if way < length {
-                integrator.aim_at(integrator.time() + way.max(LEAST_WAY * length));
-            }
+            integrator.aim_at(integrator.time() + way.max(LEAST_WAY * length));
         }
     }
 
