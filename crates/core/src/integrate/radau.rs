@@ -257,7 +257,7 @@ pub(super) const NODES: [f64; STAGES] = [0.155051025721682190, 0.644948974278317
 const FAST_RATIO: f64 = 0.03;
 
 /// How many times as long as the step before a step may be, if it is to begin on the polynomial of that.
-const LONGEST_EXTRAPOLATION: f64 = 2.0;
+const LONGEST_EXTRAPOLATION: f64 = 4.0;
 
 /// Where the Jacobian is taken, in parts of the step: of the stages it then is the nearest to all.
 const MEAN_NODE: f64 = 0.6;

@@ -321,7 +321,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
 const ORDER: f64 = 8.0;
 const SAFETY: f64 = 0.9;
 const LEAST_GROWTH: f64 = 1.0 / 3.0;
-const GREATEST_GROWTH: f64 = 6.0;
+const GREATEST_GROWTH: f64 = 12.0;
 const NOT_FINITE_SHRINK: f64 = 0.1;
 /// Bounds of the factor of predictive control.
 const LEAST_CHANGE: f64 = 0.5;
@@ -329,7 +329,7 @@ const GREATEST_CHANGE: f64 = 1.3;
 /// The least error, as a multiple of the tolerance, that tells how long a step might be: smaller ones are near the rounding.
 const SIGNIFICANT_ERROR: f64 = 1e-4;
 /// The same of a step that was cut short.
-const SIGNIFICANT_ERROR_OF_CUT_STEPS: f64 = 1e-2;
+const SIGNIFICANT_ERROR_OF_CUT_STEPS: f64 = 3e-3;
 /// In parts of the time in which the rates change: where the tolerance is loose, the series says little.
 const LONGEST_FIRST_STEP: f64 = 0.1;
 /// A part of the rates of change; a jump by more makes a new start.
