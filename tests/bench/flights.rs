@@ -5,6 +5,7 @@
 //!
 //! Machines are noisy: in every comparison the contenders take turns, and a time is the median of many rounds. Counts are exact.
 
+#![allow(clippy::disallowed_methods, reason = "what is compared may be by the system's library")]
 #![allow(clippy::unwrap_used, reason = "a benchmark that cannot go on has failed")]
 
 use std::hint::black_box;

@@ -12,6 +12,7 @@ mod conversions;
 mod corridor;
 mod departures;
 mod dispersions;
+mod elementary;
 mod elsewhere;
 mod events;
 mod extremes;

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The levels of the core, from the lowest: a module may name modules of the levels above its own in this list, and its children.
-const CORE: [&[&str]; 13] = [
-    &["scalar", "root", "number_text", "interrupt"],
+const CORE: [&[&str]; 14] = [
+    &["elementary", "root", "number_text", "interrupt"],
+    &["scalar"],
     &["integrate", "interpolation"],
     &["planet", "atmosphere", "vehicle", "control", "propulsion", "parachute", "heating"],
     &["part", "steering"],

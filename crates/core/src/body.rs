@@ -3,6 +3,7 @@
 use std::sync::{Arc, LazyLock};
 
 use crate::atmosphere::{Atmosphere, Gas, Table};
+use crate::elementary::sin;
 use crate::heating::Radiative;
 use crate::planet::{Gravity, Planet, Shape, Zonal};
 
@@ -98,7 +99,7 @@ impl Body {
     pub fn rotation_angle(&self, days: f64) -> f64 {
         let turned = self.rotation_rate * 86_400.0 * days;
         let term = |[amplitude, at_epoch, by_century]: &[f64; 3]| {
-            amplitude * (at_epoch + by_century * (days / 36_525.0)).to_radians().sin()
+            amplitude * sin((at_epoch + by_century * (days / 36_525.0)).to_radians())
         };
         let meridian = self.prime_meridian + self.prime_meridian_terms.iter().map(term).sum::<f64>();
         (meridian.to_radians() + turned).rem_euclid(std::f64::consts::TAU)

@@ -10,6 +10,7 @@
 //! the thesis, with `η = ρSC_D/(2mβ)`, the flux of a ballistic entry is in proportion to √η V³ and greatest where η = |sin γ|/6 and
 //! `V = e^(-1/6) V_e`; the tests hold the flights to that.
 
+use crate::elementary::{ln, pow};
 use crate::scalar::Scalar;
 
 /// Which correlations give the heat flux, and how the wall radiates.
@@ -88,7 +89,7 @@ pub struct Stagnation {
 impl Stagnation {
     /// The heating of a nose of a radius, m.
     pub fn new(heating: Heating, nose_radius: f64) -> Self {
-        Self { heating, nose_radius, ln_nose_radius: nose_radius.ln() }
+        Self { heating, nose_radius, ln_nose_radius: ln(nose_radius) }
     }
 
     /// The fluxes in air of a density, kg/m³, at a speed relative to it, m/s, by the formula of a segment of
@@ -237,7 +238,7 @@ const FLUX_AT_CIRCULAR_SPEED: f64 = 1.103_483e8;
 /// ```
 #[inline(always)]
 pub fn tauber_sutton<S: Scalar>(segment: usize, density: S, speed: S, nose_radius: f64) -> S {
-    radiation(segment, density, speed, [nose_radius, nose_radius.ln()])
+    radiation(segment, density, speed, [nose_radius, ln(nose_radius)])
 }
 
 /// The flux, with the logarithm of the nose radius.
@@ -294,7 +295,7 @@ pub fn tauber_sutton_mars<S: Scalar>(segment: usize, density: S, speed: S, nose_
         return S::zero();
     }
     let f = tabulated(segment, speed, &TAUBER_SUTTON_MARS_SPEED, &TAUBER_SUTTON_MARS_F);
-    power(density, 1.19) * f * (2.35e8 * nose_radius.powf(0.526))
+    power(density, 1.19) * f * (2.35e8 * pow(nose_radius, 0.526))
 }
 
 /// The radiative flux of the shocked air of Venus by Craig and Lyne, W/m².
@@ -322,7 +323,7 @@ pub fn tauber_sutton_mars<S: Scalar>(segment: usize, density: S, speed: S, nose_
 #[inline(always)]
 pub fn craig_lyne<S: Scalar>(segment: usize, density: S, speed: S, nose_radius: f64) -> S {
     let [constant, exponent] = CRAIG_LYNE_POWERS[segment.min(CRAIG_LYNE_SPEED.len())];
-    power(speed, exponent) * power(density, 1.2) * (constant * nose_radius.powf(0.49))
+    power(speed, exponent) * power(density, 1.2) * (constant * pow(nose_radius, 0.49))
 }
 
 /// A power of a number that is not negative; of none, none.

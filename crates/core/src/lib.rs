@@ -70,6 +70,8 @@
 //! R. E. Jameson Jr, Development and Validation of Reentry Simulation Using MATLAB, thesis AFIT/GSS/ENY/06-M08, Air Force
 //! Institute of Technology, March 2006: "Jameson 2006" in these pages, and its errata in the guide of the service.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the system's library"))]
+
 pub mod scenario;
 pub mod sensitivity;
 pub mod simulate;
@@ -96,6 +98,7 @@ pub mod wind;
 
 pub mod coordinates;
 
+pub mod elementary;
 pub mod integrate;
 pub mod interpolation;
 pub mod interrupt;

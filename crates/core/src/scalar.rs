@@ -8,8 +8,10 @@ pub use lanes::Lanes;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, Vector3};
-use num_dual::{DualNum, DualStruct};
+use num_dual::{Dual2_64, Dual64, DualNum, DualSVec64, DualStruct};
 use num_traits::{One, Zero};
+
+use crate::elementary;
 
 /// A real number, with or without derivatives.
 ///
@@ -83,7 +85,7 @@ pub trait Scalar:
 
 impl<D> Scalar for D
 where
-    D: DualNum<Primitive = f64> + DualStruct<Real = f64> + nalgebra::Scalar + Copy,
+    D: DualNum<Primitive = f64> + DualStruct<Real = f64> + nalgebra::Scalar + Copy + Chain,
 {
     type Mask = bool;
     type Value = f64;
@@ -130,27 +132,84 @@ where
 
     #[inline(always)]
     fn exp(self) -> Self {
-        DualNum::exp(&self)
+        let value = elementary::exp(self.re());
+        self.chain([value; 3])
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        DualNum::ln(&self)
+        let slope = self.re().recip();
+        self.chain([elementary::ln(self.re()), slope, -slope * slope])
     }
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        DualNum::sin_cos(&self)
+        let (sine, cosine) = elementary::sin_cos(self.re());
+        (self.chain([sine, cosine, -sine]), self.chain([cosine, -sine, -cosine]))
     }
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        if x.re() == 0.0 && self.re() != 0.0 {
-            // Dual numbers divide by x: the slope is that of π/2 less the angle with the axes exchanged.
-            let exchanged = DualNum::atan2(&x, self);
-            return Self::from(self.re().atan2(x.re())) - (exchanged - exchanged.re());
-        }
-        DualNum::atan2(&self, x)
+        // One over a complex number, whose imaginary part is against the slopes.
+        let square = self.re() * self.re() + x.re() * x.re();
+        self.angle(x, elementary::atan2(self.re(), x.re()), [x.re() / square, -self.re() / square])
+    }
+}
+
+/// A number to which the chain rule applies: without derivatives, or with those of the first order, or of the first two.
+pub trait Chain: Copy {
+    /// A function of the number, by the values that it and its first two derivatives have there.
+    #[must_use]
+    fn chain(self, function: [f64; 3]) -> Self;
+
+    /// A function of two numbers, by its value and its slopes there; of derivatives beyond the first order nothing is known.
+    #[must_use]
+    fn angle(self, other: Self, value: f64, slopes: [f64; 2]) -> Self;
+}
+
+impl Chain for f64 {
+    #[inline(always)]
+    fn chain(self, [value, ..]: [f64; 3]) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn angle(self, _: Self, value: f64, _: [f64; 2]) -> Self {
+        value
+    }
+}
+
+impl Chain for Dual64 {
+    #[inline(always)]
+    fn chain(self, [value, slope, _]: [f64; 3]) -> Self {
+        Self::new(value, self.eps * slope)
+    }
+
+    #[inline(always)]
+    fn angle(self, other: Self, value: f64, [by_self, by_other]: [f64; 2]) -> Self {
+        Self::new(value, self.eps * by_self + other.eps * by_other)
+    }
+}
+
+impl<const K: usize> Chain for DualSVec64<K> {
+    #[inline(always)]
+    fn chain(self, [value, slope, _]: [f64; 3]) -> Self {
+        Self { re: value, eps: self.eps * slope }
+    }
+
+    #[inline(always)]
+    fn angle(self, other: Self, value: f64, [by_self, by_other]: [f64; 2]) -> Self {
+        Self { re: value, eps: self.eps * by_self + other.eps * by_other }
+    }
+}
+
+impl Chain for Dual2_64 {
+    fn chain(self, [value, slope, bend]: [f64; 3]) -> Self {
+        Self::new(value, self.v1 * slope, self.v2 * slope + self.v1 * self.v1 * bend)
+    }
+
+    fn angle(self, other: Self, value: f64, [by_self, by_other]: [f64; 2]) -> Self {
+        Self::new(value, self.v1 * by_self + other.v1 * by_other, f64::NAN)
     }
 }
 

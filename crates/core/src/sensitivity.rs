@@ -13,6 +13,7 @@ pub use variation::Variation;
 
 use crate::atmosphere::Atmosphere;
 use crate::coordinates::{FlightPath, PlanetFixed};
+use crate::elementary::cos;
 use crate::event::{Quantity, Trigger};
 use crate::interrupt::Interrupt;
 use crate::scenario::{Case, dispatch};
@@ -124,13 +125,13 @@ pub fn sensitivities(flight: &Trajectory, interrupt: &dyn Interrupt) -> Result<S
     let last = flight.last().flight_path;
     let planet = &case.planet;
     let moving = last.speed / (planet.gravitational_parameter / planet.equatorial_radius()).sqrt();
-    let off_axis = last.geocentric_latitude.cos();
+    let off_axis = cos(last.geocentric_latitude);
     Ok(Sensitivities {
         time: gradient(0),
         longitude: defined(1, off_axis),
         geocentric_latitude: defined(2, off_axis),
         speed: defined(3, moving),
-        flight_path_angle: defined(4, moving.min(last.flight_path_angle.cos())),
+        flight_path_angle: defined(4, moving.min(cos(last.flight_path_angle))),
     })
 }
 

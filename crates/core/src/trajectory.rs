@@ -24,6 +24,7 @@ use crate::coordinates::{
     FlightPath, GreatCircle, Inertial, OrbitalElements, PlanetFixed, UndefinedElements, about_pole,
     latitude_and_altitude,
 };
+use crate::elementary::{atan2, hypot};
 use crate::heating;
 use crate::integrate::Statistics;
 use crate::interrupt::Interrupt;
@@ -469,7 +470,7 @@ impl Trajectory {
         };
         let fades = |step: &&StoredStep| {
             let position = motion.end(&step.step).position;
-            position.x.hypot(position.y) < WIND_FADE_ANGLE * position.norm()
+            hypot(position.x, position.y) < WIND_FADE_ANGLE * position.norm()
         };
         self.flown.steps.iter().find(fades).map(StoredStep::end_time)
     }
@@ -713,13 +714,13 @@ impl Trajectory {
             bank_angle,
             angle_of_attack,
             inertial_speed: inertial.velocity.norm(),
-            inertial_flight_path_angle: climb.atan2(across),
+            inertial_flight_path_angle: atan2(climb, across),
             energy: planet.energy(&state.position, state.velocity.norm()),
             specific_energy: 0.5 * inertial.velocity.norm_squared() + planet.potential(&state.position),
             downrange,
             crossrange,
             // By the place itself, from which it is exactly 0 away.
-            ground_range: from.cross(&state.position).norm().atan2(from.dot(&state.position)) * sphere,
+            ground_range: atan2(from.cross(&state.position).norm(), from.dot(&state.position)) * sphere,
             ground_distance: length * sphere,
             mass,
             thrust: phase.thrust.map_or(thrust, |thrust| thrust.force.abs()),

@@ -1,5 +1,7 @@
 //! Requests that come by a clock of their own, whether or not those before them are answered.
 
+#![allow(clippy::disallowed_methods, reason = "no digit of a flight depends on it")]
+
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

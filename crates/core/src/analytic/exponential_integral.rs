@@ -1,5 +1,7 @@
 //! The exponential integral Ei, scaled.
 
+use crate::elementary::{exp, ln};
+
 /// Euler's constant (NIST Digital Library of Mathematical Functions, 5.2.3).
 const EULER: f64 = 0.577_215_664_901_532_9;
 
@@ -18,7 +20,7 @@ const ASYMPTOTIC: f64 = 40.0;
 /// # Reference
 /// NIST Digital Library of Mathematical Functions, equations 6.6.1 and 6.12.2.
 pub(super) fn scaled_ei(x: f64) -> f64 {
-    if x < ASYMPTOTIC { (-x).exp() * (EULER + x.ln() + power_series(x)) } else { asymptotic_sum(x) / x }
+    if x < ASYMPTOTIC { exp(-x) * (EULER + ln(x) + power_series(x)) } else { asymptotic_sum(x) / x }
 }
 
 /// Σ xⁿ/(n n!), n from 1.

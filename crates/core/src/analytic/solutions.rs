@@ -4,6 +4,7 @@
 
 use super::exponential_integral::scaled_ei;
 use super::{End, Prediction, SMALL_ANGLE, Theory};
+use crate::elementary::{acos, asin, cos, exp, ln, sin};
 
 impl Theory {
     /// Shallow, gliding entry, where lift and centrifugal relief carry the weight.
@@ -38,7 +39,7 @@ impl Theory {
             return Err(End::Pole(80));
         }
         // (80) cos γ = [cos γ_e + k(η - η_e)] / [1 + (1/(βr₀))(g₀r₀/V² - 1)(1 - η_e/η)]
-        let cos_gamma = (gamma_e.cos() + k * (eta - eta_e)) / denominator;
+        let cos_gamma = (cos(gamma_e) + k * (eta - eta_e)) / denominator;
         let gamma = descending(cos_gamma, 80)?;
         Ok(Prediction { flight_path_angle: Some(gamma), ..Prediction::default() })
     }
@@ -53,11 +54,11 @@ impl Theory {
     pub(super) fn steep_glide(&self, eta: f64) -> Result<Prediction, End> {
         let Self { k, beta, speed_e, gamma_e, eta_e, .. } = *self;
         // (81) cos γ = cos γ_e + k(η - η_e)
-        let gamma = descending(gamma_e.cos() + k * (eta - eta_e), 81)?;
+        let gamma = descending(cos(gamma_e) + k * (eta - eta_e), 81)?;
         // cos γ - cos γ_e = 2 sin[(γ_e + γ)/2] sin[(γ_e - γ)/2], which keeps the digits of γ_e - γ where k is small
-        let turn = 2.0 * (k * (eta - eta_e) / (2.0 * (0.5 * (gamma_e + gamma)).sin())).asin();
+        let turn = 2.0 * asin(k * (eta - eta_e) / (2.0 * sin(0.5 * (gamma_e + gamma))));
         // (82) V² = V_e² exp[2(γ_e - γ)/k]
-        let speed_squared = speed_e * speed_e * (2.0 * turn / k).exp();
+        let speed_squared = speed_e * speed_e * exp(2.0 * turn / k);
         // (83) -dV/dt = β V_e² [(cos γ - cos γ_e)/k + η_e] exp[2(γ_e - γ)/k], whose bracket is η by (81)
         Ok(Prediction::of(speed_squared, gamma, beta * eta * speed_squared))
     }
@@ -73,10 +74,10 @@ impl Theory {
         // (84) γ = γ_e
         let gamma = gamma_e;
         // (85) α = -2η / sin γ_e
-        let [alpha, alpha_e] = [eta, eta_e].map(|eta| -2.0 * eta / gamma_e.sin());
+        let [alpha, alpha_e] = [eta, eta_e].map(|eta| -2.0 * eta / sin(gamma_e));
         // (86) A = V_e² β e^(α_e) / (2g₀) - Ei(α_e)
         // (87) V² = (2g₀/β) e^(-α) [A + Ei(α)]
-        let decay = (alpha_e - alpha).exp();
+        let decay = exp(alpha_e - alpha);
         let speed_squared =
             decay * speed_e * speed_e + 2.0 * g0 / beta * (scaled_ei(alpha) - decay * scaled_ei(alpha_e));
         Prediction::of(speed_squared, gamma, beta * eta * speed_squared)
@@ -93,7 +94,7 @@ impl Theory {
         let Self { k, beta, g0, r0, speed_e, gamma_e, eta_e, .. } = *self;
         // (1/(βr₀))(1 - g₀r₀/V_e²)
         let excess = 1.0 / (beta * r0) * (1.0 - g0 * r0 / (speed_e * speed_e));
-        let bracket = gamma_e * gamma_e - 2.0 * k * (eta - eta_e) - 2.0 * excess * (eta / eta_e).ln();
+        let bracket = gamma_e * gamma_e - 2.0 * k * (eta - eta_e) - 2.0 * excess * ln(eta / eta_e);
         if bracket < 0.0 {
             return Err(End::Bracket);
         }
@@ -104,7 +105,7 @@ impl Theory {
             return Err(End::Pole(89));
         }
         // (89) V² = V_e² exp{2(γ_e - γ) / [k + (1/(βr₀η))(1 - g₀r₀/V_e²)]}
-        let speed_squared = speed_e * speed_e * (2.0 * (gamma_e - gamma) / denominator).exp();
+        let speed_squared = speed_e * speed_e * exp(2.0 * (gamma_e - gamma) / denominator);
         // (90) -dV/dt = βηV²
         Ok(Prediction::of(speed_squared, gamma, beta * eta * speed_squared))
     }
@@ -125,6 +126,6 @@ fn descending(cos_gamma: f64, equation: u8) -> Result<f64, End> {
     match cos_gamma {
         cos_gamma if cos_gamma > 1.0 => Err(End::Level(equation)),
         cos_gamma if cos_gamma < 0.0 => Err(End::Vertical(equation)),
-        _ => Ok(-cos_gamma.acos()),
+        _ => Ok(-acos(cos_gamma)),
     }
 }

@@ -1,6 +1,7 @@
 //! An atmosphere of layers, each with a scale height of its own.
 
 use super::{SENSIBLE_SCALE_HEIGHTS, falling, us76};
+use crate::elementary::ln;
 use crate::interpolation::TableError;
 use crate::scalar::Scalar;
 
@@ -66,7 +67,7 @@ impl Layers {
         let layers = EARTH_BASES.windows(2).map(|pair| {
             let (base_altitude, top) = (pair[0], pair[1]);
             let density = us76::density(base_altitude);
-            let scale_height = (top - base_altitude) / (density / us76::density(top)).ln();
+            let scale_height = (top - base_altitude) / ln(density / us76::density(top));
             Layer { base_altitude, density, scale_height }
         });
         Self::of(layers.collect())
@@ -113,7 +114,7 @@ fn sensible_altitude(layers: &[Layer], boundaries: &[f64]) -> f64 {
     let greatest = above_0.fold(at_0, |greatest: f64, layer| greatest.max(layer.density));
     // The highest layer that begins with sensible air, and where in it this ends.
     let sensible = layers.iter().enumerate().rev().find_map(|(number, layer)| {
-        let reach = layer.scale_height * ((layer.density / greatest).ln() + SENSIBLE_SCALE_HEIGHTS);
+        let reach = layer.scale_height * (ln(layer.density / greatest) + SENSIBLE_SCALE_HEIGHTS);
         let top = boundaries.get(number).copied().unwrap_or(f64::MAX);
         (reach > 0.0).then(|| (layer.base_altitude + reach).min(top))
     });

@@ -1,6 +1,7 @@
 //! An atmosphere by a table.
 
 use super::{AtmosphereSample, SENSIBLE_SCALE_HEIGHTS, us76};
+use crate::elementary::ln;
 use crate::interpolation::{Cubics, Hint, TableError, check};
 use crate::scalar::Scalar;
 
@@ -101,11 +102,11 @@ impl Table {
         if altitude.len() < 2 {
             return Err(TableError::TooShort { entries: altitude.len(), least: 2 });
         }
-        let log_density = column(altitude, density, f64::ln)?;
+        let log_density = column(altitude, density, ln)?;
         let temperature = temperature.map(|numbers| Column::new(altitude, numbers)).transpose()?;
-        let log_pressure = pressure.map(|numbers| column(altitude, numbers, f64::ln)).transpose()?;
+        let log_pressure = pressure.map(|numbers| column(altitude, numbers, ln)).transpose()?;
         let sound = if temperature.is_some() { Sound::OfTemperature(us76::SOUND_OF_KELVIN) } else { Sound::Unknown };
-        let logarithms: Vec<f64> = density.iter().copied().map(f64::ln).collect();
+        let logarithms: Vec<f64> = density.iter().copied().map(ln).collect();
         let sensible_altitude = sensible_altitude(altitude, &logarithms, &log_density);
         let scale_height = least_scale_height(altitude, &logarithms);
         Ok(Self { log_density, temperature, log_pressure, sound, sensible_altitude, scale_height })

@@ -8,6 +8,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Rotation3, Vector3};
 
 use super::{Rotation, about_pole, wrap_to_turn};
+use crate::elementary::{asin, atan2, hypot, sin_cos};
 
 /// The years for which [`gcrf_to_planet_fixed`] and [`teme_to_planet_fixed`] are tested.
 pub const TESTED_YEARS: std::ops::RangeInclusive<i64> = 1900..=2100;
@@ -75,7 +76,7 @@ pub fn gcrf_to_planet_fixed(days: f64) -> Rotation {
     let (x, y) = celestial_pole(days);
     let t = days / CENTURY;
     let s = (0.003_81 - 0.072_57 * t * t) * t * ARCSECOND - x * y / 2.0;
-    let (e, d) = (y.atan2(x), x.hypot(y).asin());
+    let (e, d) = (atan2(y, x), asin(hypot(x, y)));
     let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), -d);
     about_pole(earth_rotation_angle(days) - s - e) * tilt * about_pole(e)
 }
@@ -118,15 +119,15 @@ fn celestial_pole(days: f64) -> (f64, f64) {
     let mut y = -0.006_951 + (-0.025_896 + (-22.407_274_7 + 0.001_900_59 * t) * t) * t;
     for (multiples, of_sine, of_cosine) in NUTATION {
         let argument: f64 = multiples.iter().zip(arguments).map(|(multiple, argument)| multiple * argument).sum();
-        let (sine, cosine) = (argument * ARCSECOND).sin_cos();
+        let (sine, cosine) = sin_cos(argument * ARCSECOND);
         x += of_sine * sine;
         y += of_cosine * cosine;
     }
     let [_, _, f, d, node] = arguments;
-    let (sine, cosine) = (node * ARCSECOND).sin_cos();
+    let (sine, cosine) = sin_cos(node * ARCSECOND);
     x += 0.205_833 * t * cosine;
     y += 0.153_042 * t * sine;
-    let (sine, cosine) = (2.0 * (f - d + node) * ARCSECOND).sin_cos();
+    let (sine, cosine) = sin_cos(2.0 * (f - d + node) * ARCSECOND);
     x += 0.012_814 * t * cosine;
     y += 0.011_714 * t * sine;
     (x * ARCSECOND, y * ARCSECOND)

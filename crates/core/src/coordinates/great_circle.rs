@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 
 use super::PlanetFixed;
+use crate::elementary::atan2;
 use crate::scalar::{Scalar, length, reciprocal_or_one};
 
 /// The great circle through the initial ground point along the initial heading; its angles are those at the planet's centre.
@@ -60,7 +61,7 @@ impl<S: Scalar<Mask = bool>> GreatCircle<S> {
 impl GreatCircle<f64> {
     /// How far along the circle the foot of a place is, in (-π, π], rad; none without a heading.
     pub fn along(&self, position: &Vector3<f64>) -> Option<f64> {
-        Some(self.ahead?.dot(position).atan2(self.start.dot(position)))
+        Some(atan2(self.ahead?.dot(position), self.start.dot(position)))
     }
 
     /// The sine of the angle between a place and the nearer pole of the circle, where the angle along the circle is undefined; none

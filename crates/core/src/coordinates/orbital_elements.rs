@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{Rotation3, Vector3};
 
 use super::{Inertial, wrap_to_half_turns, wrap_to_turn};
+use crate::elementary::{atan2, cbrt, hypot, sin, sin_cos};
 
 /// The size of an orbit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +70,7 @@ impl OrbitalElements {
     /// Jameson 2006, equations 61 to 67.
     pub fn to_inertial(&self, gravitational_parameter: f64) -> Inertial {
         let p = self.semi_latus_rectum();
-        let (sin_nu, cos_nu) = self.true_anomaly.sin_cos();
+        let (sin_nu, cos_nu) = sin_cos(self.true_anomaly);
         let radius = p / (1.0 + self.eccentricity * cos_nu);
         let position = Vector3::new(cos_nu, sin_nu, 0.0) * radius;
         let velocity = Vector3::new(-sin_nu, self.eccentricity + cos_nu, 0.0) * (gravitational_parameter / p).sqrt();
@@ -102,12 +103,12 @@ impl OrbitalElements {
         let normal = momentum / momentum.norm();
         let eccentricity_vector = v.cross(&momentum) / gravitational_parameter - r / radius;
         let eccentricity = eccentricity_vector.norm();
-        let equatorial = normal.x.hypot(normal.y) < UNDEFINED;
+        let equatorial = hypot(normal.x, normal.y) < UNDEFINED;
         let circular = eccentricity < UNDEFINED;
 
         let node = if equatorial { Vector3::x() } else { Vector3::new(-normal.y, normal.x, 0.0).normalize() };
         let across = normal.cross(&node);
-        let argument = |vector: &Vector3<f64>| vector.dot(&across).atan2(vector.dot(&node));
+        let argument = |vector: &Vector3<f64>| atan2(vector.dot(&across), vector.dot(&node));
         let argument_of_periapsis = if circular { 0.0 } else { wrap_to_turn(argument(&eccentricity_vector)) };
         let parabolic = (1.0 - eccentricity).abs() < UNDEFINED;
         let elements = Self {
@@ -117,8 +118,8 @@ impl OrbitalElements {
                 OrbitShape::SemiMajorAxis(p / ((1.0 - eccentricity) * (1.0 + eccentricity)))
             },
             eccentricity,
-            inclination: normal.x.hypot(normal.y).atan2(normal.z),
-            raan: wrap_to_turn(node.y.atan2(node.x)),
+            inclination: atan2(hypot(normal.x, normal.y), normal.z),
+            raan: wrap_to_turn(atan2(node.y, node.x)),
             argument_of_periapsis,
             true_anomaly: wrap_to_turn(argument(r) - argument_of_periapsis),
         };
@@ -151,8 +152,8 @@ impl OrbitalElements {
     /// D. A. Vallado, Fundamentals of Astrodynamics and Applications, 4th ed. 2013, equations 2-4 and 2-14.
     pub fn mean_anomaly(&self) -> Option<f64> {
         let e = self.eccentricity;
-        let (sin_half, cos_half) = (self.true_anomaly / 2.0).sin_cos();
-        let eccentric = 2.0 * ((1.0 - e).sqrt() * sin_half).atan2((1.0 + e).sqrt() * cos_half);
+        let (sin_half, cos_half) = sin_cos(self.true_anomaly / 2.0);
+        let eccentric = 2.0 * atan2((1.0 - e).sqrt() * sin_half, (1.0 + e).sqrt() * cos_half);
         self.is_bound().then(|| wrap_to_turn(mean_of_eccentric(eccentric, e)))
     }
 
@@ -165,8 +166,8 @@ impl OrbitalElements {
 pub fn true_anomaly(mean_anomaly: f64, eccentricity: f64) -> f64 {
     let e = eccentricity;
     let mean = wrap_to_half_turns(mean_anomaly);
-    let (sin_half, cos_half) = (eccentric_anomaly(mean.abs(), e) / 2.0).sin_cos();
-    let anomaly = 2.0 * ((1.0 + e).sqrt() * sin_half).atan2((1.0 - e).sqrt() * cos_half);
+    let (sin_half, cos_half) = sin_cos(eccentric_anomaly(mean.abs(), e) / 2.0);
+    let anomaly = 2.0 * atan2((1.0 + e).sqrt() * sin_half, (1.0 - e).sqrt() * cos_half);
     anomaly.copysign(mean)
 }
 
@@ -175,11 +176,11 @@ pub fn true_anomaly(mean_anomaly: f64, eccentricity: f64) -> f64 {
 /// On these the mean anomaly is a convex function of E, so that Newton's method falls to the root from every point above it. It starts at
 /// the lowest of the bounds M + e, M/(1-e) and (π² M/e)^⅓, the last of E - sin E >= E³/π², and needs some five steps.
 fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
-    let cubic = (PI * PI * mean / e).cbrt();
+    let cubic = cbrt(PI * PI * mean / e);
     let mut eccentric = (mean + e).min(mean / (1.0 - e)).min(if e > 0.0 { cubic } else { PI }).min(PI);
     for _ in 0..MOST_STEPS {
         // 1 - e cos E, without the difference of two numbers near 1.
-        let slope = (1.0 - e) + 2.0 * e * (eccentric / 2.0).sin().powi(2);
+        let slope = (1.0 - e) + 2.0 * e * sin(eccentric / 2.0).powi(2);
         let next = eccentric - (mean_of_eccentric(eccentric, e) - mean) / slope;
         // Rounding alone lets it rise, or stay; at M = 0 the slope may be 0.
         if next >= eccentric {
@@ -201,7 +202,7 @@ fn mean_of_eccentric(eccentric: f64, e: f64) -> f64 {
 /// x - sin x: by its series where the difference would lose digits.
 fn less_sine(x: f64) -> f64 {
     if x.abs() > 1.0 {
-        return x - x.sin();
+        return x - sin(x);
     }
     // x³/3! (1 - x²/(4·5) (1 - x²/(6·7) (1 - ...))); eight factors are exact below 1.
     let square = x * x;

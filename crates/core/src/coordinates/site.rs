@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use super::{Geodetic, LocalHorizon};
+use crate::elementary::atan2;
 use crate::planet::Shape;
 
 /// A place on the surface.
@@ -42,9 +43,9 @@ impl Site {
         let [here, there] = [self, other].map(|site| site.position(shape));
         let (radius, _) = shape.semi_axes();
         let [east, north] = self.offset_to(other, shape);
-        let turn = east.atan2(north);
+        let turn = atan2(east, north);
         let azimuth = if turn < 0.0 { turn + TAU } else { turn };
-        [here.cross(&there).norm().atan2(here.dot(&there)) * radius, if azimuth < TAU { azimuth } else { 0.0 }]
+        [atan2(here.cross(&there).norm(), here.dot(&there)) * radius, if azimuth < TAU { azimuth } else { 0.0 }]
     }
 
     /// Planet-fixed, m.

@@ -3,6 +3,7 @@
 use std::array::from_fn;
 
 use super::{IntegrationError, Limits, Statistics, StepBounds, radau, step};
+use crate::elementary::pow;
 
 /// The control of the length of the steps: each as long as the tolerance allows.
 #[derive(Debug)]
@@ -311,7 +312,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
         let second = norm(&from_fn(|i| next_slope[i] - slope[i])) / guess;
         // At least that in which the state changes by the tolerance: from rest, or near it, the rates change at once.
         let time = (first / second).max(1.0 / second.sqrt());
-        let part = (first * time).powf(-1.0 / (ORDER + 1.0));
+        let part = pow(first * time, -1.0 / (ORDER + 1.0));
         let refined = part.min(LONGEST_FIRST_STEP) * time;
         // Where the trial overflowed, the guess shrinks until a step is accepted.
         if refined > 0.0 && refined.is_finite() { refined.min(guess * 100.0) } else { guess }
@@ -321,7 +322,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
 const ORDER: f64 = 8.0;
 const SAFETY: f64 = 0.9;
 const LEAST_GROWTH: f64 = 1.0 / 3.0;
-const GREATEST_GROWTH: f64 = 12.0;
+const GREATEST_GROWTH: f64 = 6.0;
 const NOT_FINITE_SHRINK: f64 = 0.1;
 /// Bounds of the factor of predictive control.
 const LEAST_CHANGE: f64 = 0.5;

@@ -7,6 +7,7 @@ use super::directions::{Directions, lift_fade_over_cosine, turned, wind_fade};
 use super::state::coordinates;
 use super::{Forces, Formulation, Singularity, State, StateRate, ThrustDirection};
 use crate::coordinates::FlightPath;
+use crate::elementary::cos;
 use crate::integrate::{StepBounds, System, jacobian};
 use crate::planet::Pull;
 use crate::propulsion::ThrustAxis;
@@ -268,9 +269,9 @@ where
         let [_, circular_speed] = self.0.units();
         if state.speed <= within * circular_speed {
             Some(Singularity::Rest)
-        } else if state.geocentric_latitude.cos() <= within {
+        } else if cos(state.geocentric_latitude) <= within {
             Some(Singularity::Pole)
-        } else if state.flight_path_angle.cos() <= within {
+        } else if cos(state.flight_path_angle) <= within {
             Some(Singularity::VerticalFlight)
         } else {
             None

@@ -6,6 +6,7 @@ use super::directions::{Directions, lift_fade_over_cosine, turned};
 use super::{Flow, Forces, State, Switch};
 use crate::control::Command;
 use crate::coordinates::PlanetFixed;
+use crate::elementary::atan2;
 use crate::planet::Planet;
 use crate::propulsion::ThrustAxis;
 use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
@@ -252,7 +253,7 @@ impl Forces {
     pub(crate) fn pitch(&self, time: f64, state: &State<f64>) -> f64 {
         let flow = self.flow_where_mach_matters(time, state);
         let axis = self.axis(time, state, &flow);
-        axis.dot(&state.position).atan2(axis.cross(&state.position).norm())
+        atan2(axis.dot(&state.position), axis.cross(&state.position).norm())
     }
 }
 

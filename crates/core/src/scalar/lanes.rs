@@ -6,6 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 use super::{LookUp, Scalar};
+use crate::elementary;
 
 /// `L` numbers that go through the same operations, each by itself: lane by lane the digits are those of `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,22 +145,26 @@ impl<const L: usize> Scalar for Lanes<L> {
 
     #[inline(always)]
     fn exp(self) -> Self {
-        self.map(f64::exp)
+        self.map(elementary::exp)
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        self.map(f64::ln)
+        self.map(elementary::ln)
     }
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let both = self.0.map(f64::sin_cos);
-        (Self(both.map(|(sine, _)| sine)), Self(both.map(|(_, cosine)| cosine)))
+        let all = if self.0.iter().all(|angle| elementary::has_few_quadrants(*angle)) {
+            self.0.map(elementary::sin_cos_of_few_quadrants)
+        } else {
+            self.0.map(elementary::sin_cos)
+        };
+        (Self(all.map(|(sine, _)| sine)), Self(all.map(|(_, cosine)| cosine)))
     }
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        Self(from_fn(|lane| self.0[lane].atan2(x.0[lane])))
+        Self(from_fn(|lane| elementary::atan2(self.0[lane], x.0[lane])))
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::SVector;
 use num_dual::{Derivative, DualSVec64};
 
 use crate::coordinates::PlanetFixed;
+use crate::elementary::{exp2, log2};
 use crate::event::Event;
 use crate::motion::{Models, Parameters};
 use crate::part::Part;
@@ -51,7 +52,7 @@ impl Variation {
             return None;
         }
         // Powers of two, so that most numbers are moved without rounding, and what is a multiple of one has its slope to the last digit.
-        let steps = [1.0, 0.1, 1e-2].map(|part| (step * part).log2().round().exp2());
+        let steps = [1.0, 0.1, 1e-2].map(|part| exp2(log2(step * part).round()));
         let ways = steps.iter().flat_map(|step| [(&CENTRAL, *step), (&ONE_SIDED, *step), (&ONE_SIDED, -*step)]);
         let node = |(times, weight): (f64, f64), step: f64| {
             let offset = times * step;

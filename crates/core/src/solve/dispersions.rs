@@ -8,6 +8,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::elementary::atan2;
 use nalgebra::{DMatrix, Matrix2, SymmetricEigen};
 
 /// Variables that scatter together, and independently of all others: one, or several of a given covariance.
@@ -77,7 +78,7 @@ impl Ellipse {
         // A rounding below zero is a variance of none.
         let axis = |index: usize| eigenvalues[index].max(0.0).sqrt();
         let (east, north) = (eigenvectors[(0, major)], eigenvectors[(1, major)]);
-        let azimuth = (FRAC_PI_2 - north.atan2(east)).rem_euclid(PI);
+        let azimuth = (FRAC_PI_2 - atan2(north, east)).rem_euclid(PI);
         Self {
             semi_major_axis: axis(major),
             semi_minor_axis: axis(1 - major),

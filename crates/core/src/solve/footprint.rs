@@ -17,6 +17,7 @@ pub use region::{MapPolygon, Polygon, on_map};
 pub use survey::{Fly, Landing, Outcome};
 
 use crate::coordinates::Site;
+use crate::elementary::{hypot, sin_cos};
 use crate::planet::Shape;
 use crate::solve::target::Number;
 use crate::trajectory::Termination;
@@ -198,8 +199,8 @@ impl<E> State<'_, '_, E> {
         let sites: Vec<_> = self.survey.flights.iter().filter_map(landing).collect();
         // That which is nearest to all, by the sum of the squares of the chords.
         let direction = |site: &Site| {
-            let (sine, cosine) = site.geodetic_latitude.sin_cos();
-            let (east, ahead) = site.longitude.sin_cos();
+            let (sine, cosine) = sin_cos(site.geodetic_latitude);
+            let (east, ahead) = sin_cos(site.longitude);
             [cosine * ahead, cosine * east, sine]
         };
         let sum = sites.iter().map(direction).fold([0.0; 3], |sum, it| [0, 1, 2].map(|axis| sum[axis] + it[axis]));
@@ -279,7 +280,7 @@ fn extent<E>(survey: &Survey<E>) -> f64 {
         let along = points.iter().map(|point| point[axis]);
         along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
     };
-    side(0).hypot(side(1)).max(1.0)
+    hypot(side(0), side(1)).max(1.0)
 }
 
 /// The ring of a line whose ends are one place.

@@ -1,5 +1,6 @@
 //! The reference cases that are built into the program: the files of `tests/cases`, each of which names its source.
 
+use reentry::elementary::sin_cos;
 use serde_json::{Value, json};
 
 use crate::wire::json;
@@ -139,8 +140,8 @@ pub fn distance(a: &Value, b: &Value) -> f64 {
 
 /// Planet-fixed, m, from the radius, m, and two angles, rad.
 pub fn position(radius: f64, longitude: f64, geocentric_latitude: f64) -> [f64; 3] {
-    let (sin_lon, cos_lon) = longitude.sin_cos();
-    let (sin_lat, cos_lat) = geocentric_latitude.sin_cos();
+    let (sin_lon, cos_lon) = sin_cos(longitude);
+    let (sin_lat, cos_lat) = sin_cos(geocentric_latitude);
     [radius * cos_lat * cos_lon, radius * cos_lat * sin_lon, radius * sin_lat]
 }
 

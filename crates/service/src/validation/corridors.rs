@@ -1,5 +1,6 @@
 //! Entry corridors beside published ones: their limits as AMAT finds them, and their depths as Chapman's theory has them.
 
+use reentry::elementary::cos;
 use reentry::event::{Condition, Direction, Quantity, Trigger};
 use reentry::simulate::{SimulationError, extremes};
 use reentry::solve::corridor::{Asked, Sample, corridor};
@@ -134,7 +135,7 @@ impl Pass {
         let FlightPath { radius, speed, flight_path_angle, .. } = flight.last().flight_path;
         // ε = V²/2 - μ/r, h = r V cos γ, e = √(1 + 2 ε h²/μ²), r_a = a (1 + e) with a = -μ/2ε.
         let energy = 0.5 * speed * speed - parameter / radius;
-        let momentum = radius * speed * flight_path_angle.cos();
+        let momentum = radius * speed * cos(flight_path_angle);
         let eccentricity = (1.0 + 2.0 * energy * (momentum / parameter).powi(2)).sqrt();
         Ok(Some(2.0 * energy / (parameter * (1.0 + eccentricity))))
     }

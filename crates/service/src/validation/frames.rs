@@ -1,5 +1,6 @@
 //! Coordinates, orbital elements and the rotation of the Earth beside those of other programs: of every table the greatest deviation.
 
+use reentry::elementary::{sin, sin_cos};
 use serde_json::{Value, json};
 
 use super::cases::{self, apart, number, parsed};
@@ -76,7 +77,7 @@ fn orbit(row: &[f64]) -> [f64; 6] {
     let off = |name: &str, known: f64| number(&back["orbital_elements"], name) - known;
     let turned = |angle: f64| angle - 360.0 * (angle / 360.0).round();
     // The node is as good as the inclination defines it, the periapsis as good as the eccentricity and the node.
-    let node = AngleUnit::Deg.to_radians(inclination).sin();
+    let node = sin(AngleUnit::Deg.to_radians(inclination));
     let periapsis = 1.0 / (1.0 / node + 1.0 / e);
     let angles =
         [("/raan", raan, node), ("/argument_of_periapsis", argument, periapsis), ("/true_anomaly", anomaly, periapsis)];
@@ -110,7 +111,7 @@ fn epochs() -> Vec<Check> {
 fn epoch(row: &[&str]) -> [f64; 2] {
     let [utc, _, sidereal_time, of_gcrf @ ..] = row else { return [f64::NAN; 2] };
     let of_gcrf: Vec<_> = of_gcrf.iter().map(|field| parsed(field)).collect();
-    let (sine, cosine) = parsed(sidereal_time).sin_cos();
+    let (sine, cosine) = sin_cos(parsed(sidereal_time));
     let of_teme = [cosine, sine, 0.0, -sine, cosine, 0.0, 0.0, 0.0, 1.0];
     [("gcrf", &of_gcrf[..]), ("teme", &of_teme[..])].map(|(frame, rotation)| {
         let off = (0..3).map(|axis| {

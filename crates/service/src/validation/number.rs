@@ -1,5 +1,7 @@
 //! Numbers for people: as many digits as tell something, and no rounding, which is another on every machine.
 
+use reentry::elementary::{log10, pow};
+
 /// Where there is no number.
 pub(super) const NONE: &str = "-";
 
@@ -36,7 +38,7 @@ pub(super) fn short(value: f64, digits: usize, unit: &str) -> String {
 
 /// A difference with two digits, or as less than a power of ten where it is no more than rounding.
 pub(super) fn difference(value: Option<f64>, rounding: f64, unit: &str) -> String {
-    let least = if rounding > 0.0 { 10_f64.powf(rounding.log10().ceil()) } else { 0.0 };
+    let least = if rounding > 0.0 { pow(10.0, log10(rounding).ceil()) } else { 0.0 };
     match value {
         None => NONE.to_owned(),
         Some(value) if value.abs() < least => format!("< {}", short(least, 1, unit)),
@@ -47,7 +49,7 @@ pub(super) fn difference(value: Option<f64>, rounding: f64, unit: &str) -> Strin
 /// The exponent of the first digit; some small one of zero, and 0 of what is no number.
 #[expect(clippy::cast_possible_truncation, reason = "exponents of numbers are small")]
 fn power(value: f64) -> i32 {
-    value.log10().floor().clamp(-400.0, 400.0) as i32
+    log10(value).floor().clamp(-400.0, 400.0) as i32
 }
 
 /// The prefix of the unit with which a number has few digits, and by how much it scales it.

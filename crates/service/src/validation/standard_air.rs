@@ -1,5 +1,6 @@
 //! The air of `us76` at the points that the U.S. Standard Atmosphere, 1976, prints.
 
+use reentry::elementary::pow;
 use serde_json::json;
 
 use super::cases::{self, number, parsed};
@@ -80,5 +81,5 @@ fn air(program: Program, altitude: f64) -> Result<[f64; COLUMNS.len()], ApiError
 fn last_digit(printed: &str) -> f64 {
     let (mantissa, exponent) = printed.split_once('e').unwrap_or((printed, "0"));
     let decimals = mantissa.split_once('.').map_or("", |(_, decimals)| decimals).chars().map(|_| 0.1).product::<f64>();
-    decimals * 10_f64.powf(parsed(exponent))
+    decimals * pow(10.0, parsed(exponent))
 }

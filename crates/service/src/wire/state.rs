@@ -9,6 +9,7 @@ use reentry::coordinates::{
     self, FlightPath, Geodetic, Inertial, InertialFlightPath, OrbitShape, OrbitalElements, PlanetFixed, Rotation,
     TESTED_YEARS, about_pole, gcrf_to_planet_fixed, teme_to_planet_fixed,
 };
+use reentry::elementary::{cos, sin_cos};
 use reentry::planet::Planet as CorePlanet;
 use reentry::scenario::state_faults;
 
@@ -93,7 +94,7 @@ impl Height {
         match self {
             Self::Radius(radius) => radius,
             Self::Altitude(altitude) => {
-                let (sin_latitude, cos_latitude) = geocentric_latitude.sin_cos();
+                let (sin_latitude, cos_latitude) = sin_cos(geocentric_latitude);
                 planet.shape.surface_radius(sin_latitude, cos_latitude) + altitude
             }
         }
@@ -192,7 +193,7 @@ fn orbit_faults(pointer: &str, shape: OrbitShape, e: f64, anomaly: Anomaly) -> V
     }
     match anomaly {
         Anomaly::True(anomaly) => {
-            let reach = 1.0 + e * anomaly.cos();
+            let reach = 1.0 + e * cos(anomaly);
             if reach <= 0.0 {
                 let detail =
                     format!("is beyond the asymptote of the orbit: 1 + e cos ν must be greater than 0, got {reach}");

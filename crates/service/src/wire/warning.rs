@@ -2,6 +2,7 @@
 
 use reentry::body::Body;
 use reentry::coordinates::UndefinedElements;
+use reentry::elementary::pow;
 use reentry::motion::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
 use reentry::number_text::{NumberText, apart, rounded};
 use reentry::simulate::SimulationError;
@@ -397,7 +398,7 @@ fn seconds(time: f64) -> String {
 pub fn longest_within_a_metre(relative_tolerance: f64) -> f64 {
     const BY_DEFAULT: [f64; 2] = [7200.0, 1e-10];
     let [longest, default] = BY_DEFAULT;
-    longest * (default / relative_tolerance).powf(0.8).max(1.0)
+    longest * pow(default / relative_tolerance, 0.8).max(1.0)
 }
 
 #[cfg(test)]

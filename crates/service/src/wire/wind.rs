@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use reentry::elementary::{cos, sin};
 use reentry::scenario::Bound;
 use reentry::wind::{Wind as CoreWind, WindTable};
 
@@ -140,5 +141,5 @@ fn table(object: &mut Object) -> Option<Wind> {
 
 /// The components to the east and to the north of a wind from a direction, rad.
 fn components(speed: f64, from: f64) -> [f64; 2] {
-    [-speed * from.sin(), -speed * from.cos()]
+    [-speed * sin(from), -speed * cos(from)]
 }

@@ -5,6 +5,7 @@ use std::array::from_fn;
 use num_dual::Dual64;
 
 use super::{EARTH_RADIUS, GAS_CONSTANT, GRAVITY, MOLECULAR_WEIGHT, TEMPERATURE_AT_86_KM, segment, thermosphere};
+use crate::elementary::{exp, ln, pow};
 
 /// `N_A`, 1/kmol (Table 2).
 const AVOGADRO: f64 = 6.022_169e26;
@@ -70,18 +71,18 @@ impl Level {
 
     /// n of N₂, O, O₂, Ar and He, 1/m³ (equation 36).
     fn heavy_gases(&self, integrals: &Integrals) -> [f64; 5] {
-        from_fn(|gas| AT_86_KM[gas] * (TEMPERATURE_AT_86_KM / self.temperature) * (-integrals[gas]).exp())
+        from_fn(|gas| AT_86_KM[gas] * (TEMPERATURE_AT_86_KM / self.temperature) * exp(-integrals[gas]))
     }
 
     /// D, m²/s, of O, O₂, Ar, He and H in a background of so many molecules, 1/m³ (equation 8).
     fn diffusion(&self, gas: usize, background: f64) -> f64 {
         let [_, a, b] = DIFFUSION[gas];
-        a / background * (self.temperature / 273.15).powf(b)
+        a / background * pow(self.temperature / 273.15, b)
     }
 
     /// (T/T₁₁)^(1+α) of hydrogen.
     fn hydrogen_ratio(&self) -> f64 {
-        (self.temperature / TEMPERATURE_AT_500_KM).powf(1.0 + DIFFUSION[4][0])
+        pow(self.temperature / TEMPERATURE_AT_500_KM, 1.0 + DIFFUSION[4][0])
     }
 }
 
@@ -109,7 +110,7 @@ pub(super) fn integrands(altitude: f64, integrals: &Integrals) -> Integrals {
     }
     if altitude > HYDROGEN[0] && altitude < HYDROGEN[1] {
         let resistance = HYDROGEN_FLUX / level.diffusion(4, n.iter().sum());
-        slopes[6] = resistance * level.hydrogen_ratio() * integrals[5].exp();
+        slopes[6] = resistance * level.hydrogen_ratio() * exp(integrals[5]);
     }
     slopes
 }
@@ -126,8 +127,8 @@ pub(super) fn point(altitude: f64, integrals: &Integrals, at_500_km: &Integrals)
     }
     if altitude > HYDROGEN[0] {
         // n = (n₁₁ - ∫ from 500 km of φ/D (T/T₁₁)^(1+α) e^τ) (T₁₁/T)^(1+α) e^-τ, with τ = 0 at 500 km   (39)
-        let source = HYDROGEN_AT_500_KM * at_500_km[5].exp() + at_500_km[6] - integrals[6];
-        let spread = (-integrals[5]).exp() / level.hydrogen_ratio();
+        let source = HYDROGEN_AT_500_KM * exp(at_500_km[5]) + at_500_km[6] - integrals[6];
+        let spread = exp(-integrals[5]) / level.hydrogen_ratio();
         let decay = (1.0 + DIFFUSION[4][0]) * segment + slopes[5];
         gases[5] = [source * spread, -(source * decay + slopes[6]) * spread];
     }
@@ -138,7 +139,7 @@ pub(super) fn point(altitude: f64, integrals: &Integrals, at_500_km: &Integrals)
     let molecular_scale_temperature = level.temperature * (number / mass) * MOLECULAR_WEIGHT;
     let slope = segment + number_slope / number - mass_slope / mass;
     Point {
-        log_density: [(mass / AVOGADRO).ln(), mass_slope / mass],
+        log_density: [ln(mass / AVOGADRO), mass_slope / mass],
         molecular_scale_temperature: [molecular_scale_temperature, molecular_scale_temperature * slope],
     }
 }
@@ -151,12 +152,12 @@ fn gravity(altitude: f64) -> f64 {
 /// K, m²/s: 120 up to 95 km, then less, and none from 115 km on (equations 7a to 7c).
 fn eddy_diffusion(altitude: f64) -> f64 {
     let height = (altitude - 95e3).max(0.0) / 1000.0;
-    if height < 20.0 { 120.0 * (1.0 - 400.0 / (400.0 - height * height)).exp() } else { 0.0 }
+    if height < 20.0 { 120.0 * exp(1.0 - 400.0 / (400.0 - height * height)) } else { 0.0 }
 }
 
 /// v/(D + K), 1/m, of O, O₂, Ar and He (equation 37); from 150 km on less than 1e-7 of what it is added to.
 fn flux(altitude: f64, gas: usize) -> f64 {
-    let term = |strength: f64, height: f64, width: f64| strength * height.powi(2) * (-width * height.powi(3)).exp();
+    let term = |strength: f64, height: f64, width: f64| strength * height.powi(2) * exp(-width * height.powi(3));
     let altitude = altitude / 1000.0;
     let [strength, base, width] = FLUX[gas];
     // Atomic oxygen has a second term, up to 97 km.

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use super::gases::{self, Integrals};
 use super::{GAS_CONSTANT, GRAVITY, MIXED_TOP, MOLECULAR_WEIGHT, TOP, geopotential};
+use crate::elementary::{ln, ln_1p};
 use crate::scalar::Scalar;
 
 /// H, m, and `dT_M/dH`, K/m, from there on (Table 4); the first layer is the second, continued below -5 km.
@@ -153,7 +154,7 @@ fn polynomial<S: Scalar>(x: S, [c0, c1, c2, c3, c4, c5]: [S; 6]) -> S {
 /// ```
 fn layers() -> ([Layer; LAYERS.len()], f64) {
     let [mut temperature, pressure] = SEA_LEVEL;
-    let mut log_density = (pressure * MOLECULAR_WEIGHT / (GAS_CONSTANT * temperature)).ln();
+    let mut log_density = ln(pressure * MOLECULAR_WEIGHT / (GAS_CONSTANT * temperature));
     let layers = from_fn(|number| {
         let (base, lapse) = LAYERS[number];
         let top = LAYERS.get(number + 1).map_or(geopotential(MIXED_TOP), |(base, _)| *base);
@@ -161,7 +162,7 @@ fn layers() -> ([Layer; LAYERS.len()], f64) {
         let [power, decay] = if lapse == 0.0 { [0.0, column / temperature] } else { [column / lapse - 1.0, 0.0] };
         let growth = lapse / temperature;
         let layer = Layer { base, temperature, growth, power, log_density, decay };
-        log_density += power * (growth * (top - base)).ln_1p() + decay * (top - base);
+        log_density += power * ln_1p(growth * (top - base)) + decay * (top - base);
         temperature += lapse * (top - base);
         layer
     });

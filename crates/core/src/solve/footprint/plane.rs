@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::coordinates::Site;
+use crate::elementary::{asin, atan, atan2, atanh, hypot, sin, sin_cos};
 use crate::planet::Shape;
 
 /// A point of the plane, m.
@@ -47,16 +48,16 @@ impl Authalic {
             // The next term of the series is lost in rounding.
             sine * (1.0 + squared * sine * sine / 3.0)
         } else if squared > 0.0 {
-            (eccentricity * sine).atanh() / eccentricity
+            atanh(eccentricity * sine) / eccentricity
         } else {
-            (eccentricity * sine).atan() / eccentricity
+            atan(eccentricity * sine) / eccentricity
         };
         (1.0 - squared) * (sine / (1.0 - squared * sine * sine) + inverse)
     }
 
     /// The sine of the authalic latitude.
     fn sine(&self, geodetic_latitude: f64) -> f64 {
-        (self.zone(geodetic_latitude.sin()) / self.at_pole).clamp(-1.0, 1.0)
+        (self.zone(sin(geodetic_latitude)) / self.at_pole).clamp(-1.0, 1.0)
     }
 
     /// The geodetic latitude, by Newton's method on its sine.
@@ -67,7 +68,7 @@ impl Authalic {
             let slope = 2.0 * (1.0 - squared) / (1.0 - squared * geodetic * geodetic).powi(2);
             geodetic = (geodetic + (sine * self.at_pole - self.zone(geodetic)) / slope).clamp(-1.0, 1.0);
         }
-        geodetic.asin()
+        asin(geodetic)
     }
 }
 
@@ -101,27 +102,27 @@ impl Plane {
     pub fn point(&self, site: &Site) -> Point {
         let sine = self.authalic.sine(site.geodetic_latitude);
         let cosine = (1.0 - sine * sine).sqrt();
-        let (sin_east, cos_east) = (site.longitude - self.longitude).sin_cos();
+        let (sin_east, cos_east) = sin_cos(site.longitude - self.longitude);
         let to_centre = self.sin_latitude * sine + self.cos_latitude * cosine * cos_east;
         let scale = self.radius * (2.0 / (1.0 + to_centre).max(f64::MIN_POSITIVE)).sqrt();
         let north = self.cos_latitude * sine - self.sin_latitude * cosine * cos_east;
         // The opposite of the centre is taken to the south.
         let limit = 2.0 * self.radius;
         let [x, y] = [scale * cosine * sin_east, scale * north];
-        if x.hypot(y) <= limit { [x, y] } else { [0.0, -limit] }
+        if hypot(x, y) <= limit { [x, y] } else { [0.0, -limit] }
     }
 
     /// The place at a point of the map: the longitude is within half a turn of the centre's.
     pub fn site(&self, [x, y]: Point) -> Site {
-        let distance = x.hypot(y);
+        let distance = hypot(x, y);
         if distance == 0.0 {
             return Site { longitude: self.longitude, geodetic_latitude: self.authalic.geodetic(self.sin_latitude) };
         }
-        let angle = 2.0 * (0.5 * distance / self.radius).min(1.0).asin();
-        let (sine, cosine) = angle.sin_cos();
+        let angle = 2.0 * asin((0.5 * distance / self.radius).min(1.0));
+        let (sine, cosine) = sin_cos(angle);
         let north = y / distance;
         let latitude = (cosine * self.sin_latitude + north * sine * self.cos_latitude).clamp(-1.0, 1.0);
-        let east = (x / distance * sine).atan2(self.cos_latitude * cosine - north * self.sin_latitude * sine);
+        let east = atan2(x / distance * sine, self.cos_latitude * cosine - north * self.sin_latitude * sine);
         let longitude = self.longitude + east;
         let turns = (longitude / (2.0 * PI)).round();
         Site { longitude: longitude - turns * 2.0 * PI, geodetic_latitude: self.authalic.geodetic(latitude) }

@@ -7,6 +7,7 @@ use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 use super::maximise::{Objective, best, maximise};
 use super::plane::Point;
 use super::survey::{FlightIndex, Halt, Survey, from_line};
+use crate::elementary::sin_cos;
 
 /// The distance from a centre in a direction, and how far a landing is off that ray, on a map that makes the landings round.
 struct Ray {
@@ -28,7 +29,7 @@ impl<E> Objective<E> for Ray {
 impl Ray {
     fn along_and_across(&self, [x, y]: Point) -> [f64; 2] {
         let place = self.round * Vector2::new(x - self.centre[0], y - self.centre[1]);
-        let (sine, cosine) = self.direction.sin_cos();
+        let (sine, cosine) = sin_cos(self.direction);
         [place.x * cosine + place.y * sine, place.y * cosine - place.x * sine]
     }
 }

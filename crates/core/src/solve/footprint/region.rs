@@ -11,6 +11,7 @@ use i_overlay::float::simplify::SimplifyShape;
 use i_overlay::float::single::SingleFloatOverlay;
 
 use super::plane::{Plane, Point};
+use crate::elementary::hypot;
 
 /// A polygon: its outer ring, counterclockwise, and its holes, clockwise; no ring repeats its first point.
 pub type Polygon = Vec<Vec<Point>>;
@@ -45,7 +46,7 @@ const LONGEST_EDGE: f64 = 5e4;
 fn unrolled(ring: &[Point], plane: &Plane) -> Vec<[f64; 2]> {
     let mut places: Vec<[f64; 2]> = Vec::new();
     for (one, next) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-        let parts = ((next[0] - one[0]).hypot(next[1] - one[1]) / LONGEST_EDGE).ceil().max(1.0);
+        let parts = (hypot(next[0] - one[0], next[1] - one[1]) / LONGEST_EDGE).ceil().max(1.0);
         let mut part = 0.0;
         while part < parts {
             let between = |axis: usize| one[axis] + part / parts * (next[axis] - one[axis]);
@@ -149,7 +150,7 @@ impl Edge {
         let mut edge = Self { width, squares: HashSet::new() };
         for ring in polygons.iter().flatten() {
             for (one, next) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                let length = (next[0] - one[0]).hypot(next[1] - one[1]);
+                let length = hypot(next[0] - one[0], next[1] - one[1]);
                 let mut along = 0.0;
                 while along <= length {
                     let part = if length > 0.0 { along / length } else { 0.0 };

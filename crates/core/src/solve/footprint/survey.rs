@@ -2,6 +2,7 @@
 
 use super::plane::{Plane, Point};
 use crate::coordinates::Site;
+use crate::elementary::hypot;
 use crate::root::bracketed;
 use crate::solve::target::Number;
 use crate::trajectory::Termination;
@@ -201,7 +202,7 @@ impl Outcome {
 
 /// The distance of two points, m.
 pub(super) fn distance(one: Point, other: Point) -> f64 {
-    (one[0] - other[0]).hypot(one[1] - other[1])
+    hypot(one[0] - other[0], one[1] - other[1])
 }
 
 /// How far a point is off the middle of two others, m.

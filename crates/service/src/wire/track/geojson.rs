@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use geojson::{Feature, FeatureCollection, Geometry};
+use reentry::elementary::{atan2, hypot, sin_cos};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -96,13 +97,12 @@ fn passes_pole(one: &Vertex, other: &Vertex) -> bool {
         return false;
     }
     // The normal of the plane of the great circle, with one vertex in longitude 0.
-    let [(sin_one, cos_one), (sin_other, cos_other)] =
-        [one, other].map(|vertex| vertex.latitude.to_radians().sin_cos());
-    let (sin_turn, cos_turn) = turn.to_radians().sin_cos();
+    let [(sin_one, cos_one), (sin_other, cos_other)] = [one, other].map(|vertex| sin_cos(vertex.latitude.to_radians()));
+    let (sin_turn, cos_turn) = sin_cos(turn.to_radians());
     let x = -sin_one * cos_other * sin_turn;
     let y = sin_one * cos_other * cos_turn - cos_one * sin_other;
     let z = cos_one * cos_other * sin_turn;
-    let nearest = z.atan2(x.hypot(y)).to_degrees();
+    let nearest = atan2(z, hypot(x, y)).to_degrees();
     let line = 0.5 * (from_pole(one) + from_pole(other));
     nearest < line - nearest
 }
