@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
 use reentry::atmosphere::us76;
-use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System};
+use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System, are_used};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{arrival, arrivals, simulate_with_bodies};
@@ -424,10 +424,9 @@ fn number_types() {
     };
     let members: Vec<_> = (0..256).map(member).collect();
     let scenario = Scenario::new(case.clone()).unwrap();
-    let [alone, four, eight, plain, derivatives, verification] = micros([
+    let [alone, in_lanes, plain, derivatives, verification] = micros([
         &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
-        &mut timed(|| arrivals::<4>(&members, &NEVER)),
-        &mut timed(|| arrivals::<8>(&members, &NEVER)),
+        &mut timed(|| arrivals(&members, &NEVER)),
         &mut timed(|| simulate(&scenario, &NEVER)),
         &mut timed(|| sensitivities(&flight, &NEVER)),
         &mut timed(|| verify(&scenario, &flight, &NEVER)),
@@ -436,8 +435,7 @@ fn number_types() {
     println!("| --- | --- | --- |");
     let line = |what: &str, time: f64, plain: f64| println!("| {what} | {time:.1} µs | {:.2} |", time / plain);
     line("an arrival, one of 256 dispersed ones", alone / 256.0, alone / 256.0);
-    line("in lanes of 4", four / 256.0, alone / 256.0);
-    line("in lanes of 8", eight / 256.0, alone / 256.0);
+    line(&format!("in lanes ({})", are_used().unwrap_or("none")), in_lanes / 256.0, alone / 256.0);
     line("a flight with its peaks", plain, plain);
     line("its sensitivities, 5 by 12", derivatives, plain);
     line("its verification", verification, plain);

@@ -25,7 +25,9 @@ fn off(number: f64, exact: &BigFloat) -> f64 {
 
 /// The farthest that a function is off, and where.
 fn farthest(places: impl Iterator<Item = f64>, mut off: impl FnMut(f64) -> f64) -> (f64, f64) {
-    places.map(|x| (off(x), x)).fold((0.0, 0.0), |worst, here| if here.0 > worst.0 || here.0.is_nan() { here } else { worst })
+    places
+        .map(|x| (off(x), x))
+        .fold((0.0, 0.0), |worst, here| if here.0 > worst.0 || here.0.is_nan() { here } else { worst })
 }
 
 /// Places at equal distances.
@@ -35,7 +37,8 @@ fn evenly(from: f64, to: f64, count: u32) -> impl Iterator<Item = f64> {
 
 /// Numbers of all sizes from 2 to the power of `from` to 2 to the power of `to`.
 fn of_all_sizes(from: i32, to: i32) -> impl Iterator<Item = f64> {
-    (from..to).flat_map(|power| [1.0, 1.111_111_111_111, 1.414_213_562_373, 1.9].map(|mantissa| mantissa * 2_f64.powi(power)))
+    (from..to)
+        .flat_map(|power| [1.0, 1.111_111_111_111, 1.414_213_562_373, 1.9].map(|mantissa| mantissa * 2_f64.powi(power)))
 }
 
 /// Doubles around a number, one after another.
@@ -48,7 +51,8 @@ fn the_exponential_is_at_most_one_unit_off() {
     let mut consts = Consts::new().unwrap();
     let mut off = |x: f64| off(exp(x), &exactly(x).exp(BITS, TO, &mut consts));
     let small = of_all_sizes(-60, 0).flat_map(|x| [x, -x]);
-    let places = evenly(-745.0, 709.7, 8000).chain(evenly(-2.0, 2.0, 8192)).chain(small).chain(around(0.346_573_590_279_972_64));
+    let places =
+        evenly(-745.0, 709.7, 8000).chain(evenly(-2.0, 2.0, 8192)).chain(small).chain(around(0.346_573_590_279_972_64));
     let (worst, x) = farthest(places, &mut off);
     assert!(worst <= 1.0, "exp {x:e} is {worst} units off");
     assert_eq!([709.8, 1e300, -746.0, -1e300].map(exp), [f64::INFINITY, f64::INFINITY, 0.0, 0.0]);
@@ -59,8 +63,11 @@ fn the_exponential_is_at_most_one_unit_off() {
 fn the_logarithm_is_at_most_one_unit_off() {
     let mut consts = Consts::new().unwrap();
     let mut off = |x: f64| off(ln(x), &exactly(x).ln(BITS, TO, &mut consts));
-    let places = of_all_sizes(-1022, 1024).chain((0..52).map(|power| f64::from_bits(1 << power))).chain(evenly(0.6, 1.6, 8192).filter(|x| *x != 1.0));
-    let near_one = around(1.0).filter(|x| *x != 1.0).chain(around(0.707_106_781_186_547_5)).chain(around(1.414_213_562_373_095));
+    let places = of_all_sizes(-1022, 1024)
+        .chain((0..52).map(|power| f64::from_bits(1 << power)))
+        .chain(evenly(0.6, 1.6, 8192).filter(|x| *x != 1.0));
+    let near_one =
+        around(1.0).filter(|x| *x != 1.0).chain(around(0.707_106_781_186_547_5)).chain(around(1.414_213_562_373_095));
     let (worst, x) = farthest(places.chain(near_one), &mut off);
     assert!(worst <= 1.0, "ln {x:e} is {worst} units off");
     assert!([-1.0, -f64::MIN_POSITIVE, f64::NEG_INFINITY, f64::NAN].into_iter().all(|x| ln(x).is_nan()));
@@ -76,7 +83,8 @@ fn sine_and_cosine_are_at_most_one_unit_off() {
     };
     // The doubles that come nearest to the multiples of π/2 lose the most digits.
     let multiples = (1..=1020).map(|count| f64::from(count) * std::f64::consts::FRAC_PI_2);
-    let places = evenly(-7.0, 7.0, 8192).chain(evenly(-1600.0, 1600.0, 4001)).chain(multiples).chain(of_all_sizes(-60, 20));
+    let places =
+        evenly(-7.0, 7.0, 8192).chain(evenly(-1600.0, 1600.0, 4001)).chain(multiples).chain(of_all_sizes(-60, 20));
     let (worst, x) = farthest(places, &mut worst_of);
     assert!(worst <= 1.0, "sine or cosine of {x:e} is {worst} units off");
     assert!([f64::INFINITY, f64::NAN].into_iter().all(|x| sin_cos(x).0.is_nan() && sin_cos(x).1.is_nan()));

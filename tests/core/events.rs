@@ -425,7 +425,7 @@ fn arrivals_with_events_are_the_ends_of_the_flights() {
     ];
     let scenarios: Vec<_> = cases.iter().map(|case| Scenario::new(case.clone()).unwrap()).collect();
     let never = AtomicBool::new(false);
-    let in_lanes = arrivals::<4>(&scenarios, &never);
+    let in_lanes = arrivals(&scenarios, &never);
     for ((scenario, case), in_lanes) in scenarios.iter().zip(&cases).zip(in_lanes) {
         let flight = fly(case);
         for end in [arrival(scenario, &never).unwrap(), in_lanes.unwrap()] {

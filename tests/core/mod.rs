@@ -21,6 +21,7 @@ mod gravity;
 mod ground_track;
 mod heating;
 mod integrator;
+mod lanes;
 mod model_modes;
 mod nrlmsise00;
 mod number_types;

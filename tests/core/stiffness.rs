@@ -444,7 +444,7 @@ fn stiff_flights_in_lanes_end_at_the_digits_of_flights_alone() {
     let cases = [1.0, 2.0, 5.0, 700.0, 20.0, 3.0, 800.0].map(light);
     let scenarios = cases.map(|case| Scenario::new(case).unwrap());
     let alone: Vec<_> = scenarios.iter().map(|scenario| arrival(scenario, &NEVER)).collect();
-    assert_eq!(format!("{:?}", arrivals::<4>(&scenarios, &NEVER)), format!("{alone:?}"));
+    assert_eq!(format!("{:?}", arrivals(&scenarios, &NEVER)), format!("{alone:?}"));
     assert!(fly(scenarios[0].case()).end_time() > 600.0);
 }
 

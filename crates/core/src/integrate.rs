@@ -8,11 +8,13 @@
 mod any_step;
 mod elimination;
 pub mod event;
+mod lanes;
 mod radau;
 mod step;
 mod step_control;
 mod tableau;
 
+pub use lanes::{LaneSteps, are_used, use_no_lanes};
 pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 
@@ -24,7 +26,6 @@ use nalgebra::Const;
 use num_dual::DualSVec64;
 
 use crate::interrupt::Interrupt;
-use crate::scalar::Lanes;
 use step::Inside;
 use step_control::{NOT_CONVERGED_SHRINK, StepControl};
 
@@ -179,11 +180,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
     /// When the limit of steps is reached, no step meets the tolerance, or the flag is raised.
     pub fn advance<F: StepBounds<N>>(&mut self, system: &F, end: f64) -> Result<Step<N>, IntegrationError> {
         loop {
-            if !self.is_stiff() && self.control.expects_corner() {
-                let corner = self.time_to_corner(system, self.control.length);
-                self.control.go_to_corner(corner);
-            }
-            let trial_end = self.control.trial_end(end)?;
+            let trial_end = self.prepare(system, end)?;
             if self.is_stiff() {
                 match self.attempt_implicit(system, self.control.length) {
                     Some(trial) if self.control.accepts_implicit(&self.state, &trial) => {
@@ -195,16 +192,43 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 self.limit_implicit(system);
             } else {
                 let Self { control, state, derivative, .. } = self;
-                let length = control.length;
-                let trial = step::attempt(system, control.time, state, derivative, length);
-                if control.accepts(state, &trial) {
-                    let end_derivative = system.derivative(trial_end, &trial.end);
-                    return Ok(self.take(system, trial, trial_end, end_derivative));
+                let trial = step::attempt(system, control.time, state, derivative, control.length);
+                let slopes = trial.kept_slopes();
+                let rest = |end: &[f64; N]| (system.derivative(trial_end, end), slopes);
+                if let Some(step) = self.judge(system, trial.outcome, trial_end, rest) {
+                    return Ok(step);
                 }
-                let corner = self.time_to_corner(system, length);
-                self.control.end_at_corner(length, corner);
             }
         }
+    }
+
+    /// Makes the next trial step ready, which ends at `end` at the latest; returns when it ends, s.
+    fn prepare<F: StepBounds<N>>(&mut self, system: &F, end: f64) -> Result<f64, IntegrationError> {
+        if !self.is_stiff() && self.control.expects_corner() {
+            let corner = self.time_to_corner(system, self.control.length);
+            self.control.go_to_corner(corner);
+        }
+        self.control.trial_end(end)
+    }
+
+    /// Goes to the end of an explicit trial step, if it is exact enough; otherwise the next one will be shorter. `rest`: the rate of change at the end,
+    /// and the slopes that the step keeps.
+    #[inline]
+    fn judge<F: StepBounds<N>>(
+        &mut self,
+        system: &F,
+        trial: step::Outcome<f64, N>,
+        trial_end: f64,
+        rest: impl FnOnce(&[f64; N]) -> ([f64; N], step::KeptSlopes<N>),
+    ) -> Option<Step<N>> {
+        let length = self.control.length;
+        if self.control.accepts(&self.state, &trial) {
+            let rest = rest(&trial.end);
+            return Some(self.take(system, trial.end, trial_end, rest));
+        }
+        let corner = self.time_to_corner(system, length);
+        self.control.end_at_corner(length, corner);
+        None
     }
 
     /// The time to the next corner of the rates that is not just at the start of a step of a length, s.
@@ -224,8 +248,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
         let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, length);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
-        let end_derivative = system.derivative(end, &trial.end);
-        self.take(system, trial, end, end_derivative)
+        let (slopes, state) = (trial.kept_slopes(), trial.outcome.end);
+        let end_derivative = system.derivative(end, &state);
+        self.take(system, state, end, (end_derivative, slopes))
     }
 
     /// Ends the step that was taken last inside it, at a part of it, as its interpolant has the state there: which costs one evaluation. None
@@ -280,15 +305,24 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.control.shorten(system.longest_step(time, &self.state));
     }
 
-    /// Goes to the end of a trial step.
+    /// Goes to the end of an explicit trial step: a state and a time, s, with the rate of change there and the slopes that the step keeps.
+    #[inline]
     fn take<F: StepBounds<N>>(
         &mut self,
         system: &F,
-        trial: step::Trial<f64, N>,
+        end: [f64; N],
         end_time: f64,
-        end_derivative: [f64; N],
+        (end_derivative, slopes): ([f64; N], step::KeptSlopes<N>),
     ) -> Step<N> {
-        let step = trial.into_step(self.control.time, end_time, &self.state, end_derivative);
+        let step = Step {
+            start_time: self.control.time,
+            end_time,
+            start: self.state,
+            end,
+            start_derivative: self.derivative,
+            end_derivative,
+            inside: Inside::Explicit(slopes),
+        };
         self.previous = None;
         self.go_to_end(&step);
         let longest = system.longest_step(end_time, &self.state);
@@ -335,54 +369,6 @@ impl<'a, const N: usize> Integrator<'a, N> {
     fn go_to_end(&mut self, step: &Step<N>) {
         (self.control.time, self.state, self.derivative) = (step.end_time, step.end, step.end_derivative);
     }
-}
-
-/// Tries a step of each integrator, all computed at once by the `system` of their lanes, to the ends at the latest.
-///
-/// Each lane has an integrator, its own system, and its end, s. A lane whose trial meets its tolerance advances by it; the others will
-/// try a shorter one the next time. A lane without an integrator is idle. The steps are those that the integrators would take alone,
-/// to the last digit; explicit ones: an integrator whose system [is stiff](Integrator::is_stiff) has to take its next step alone.
-///
-/// # Errors
-/// Lane by lane those of [`Integrator::advance`].
-pub fn try_in_lanes<M: System<Lanes<L>, N>, F: StepBounds<N>, const N: usize, const L: usize>(
-    system: &M,
-    mut lanes: [Option<(&mut Integrator<'_, N>, &F, f64)>; L],
-) -> [Option<Result<Step<N>, IntegrationError>>; L] {
-    let trial_ends = lanes.each_mut().map(|lane| {
-        let (integrator, _, end) = lane.as_mut()?;
-        Some(integrator.control.trial_end(*end))
-    });
-    let state = from_fn(|i| packed(&lanes, |integrator| integrator.state[i]));
-    let derivative = from_fn(|i| packed(&lanes, |integrator| integrator.derivative[i]));
-    let time = packed(&lanes, |integrator| integrator.control.time);
-    let length = packed(&lanes, |integrator| integrator.control.length);
-    let trial = step::attempt(&step::Once(system), time, &state, &derivative, length);
-    let ends = Lanes(from_fn(|lane| match trial_ends[lane] {
-        Some(Ok(end)) => end,
-        _ => 0.0,
-    }));
-    let end_derivative = system.derivative(ends, &trial.end);
-    let mut index = 0..;
-    lanes.map(|lane| {
-        let index = index.next()?;
-        let (integrator, own, _) = lane?;
-        let trial_end = match trial_ends[index]? {
-            Ok(trial_end) => trial_end,
-            Err(error) => return Some(Err(error)),
-        };
-        let trial = trial.lane(index);
-        let accepted = integrator.control.accepts(&integrator.state, &trial);
-        accepted.then(|| Ok(integrator.take(own, trial, trial_end, end_derivative.map(|rate| rate.0[index]))))
-    })
-}
-
-/// A number of each integrator.
-fn packed<F, const N: usize, const L: usize>(
-    lanes: &[Option<(&mut Integrator<'_, N>, &F, f64)>; L],
-    number: impl Fn(&Integrator<'_, N>) -> f64,
-) -> Lanes<L> {
-    Lanes(from_fn(|lane| lanes[lane].as_ref().map_or(0.0, |(integrator, ..)| number(integrator))))
 }
 
 /// A corner nearer than this part of a rejected step is not why it was rejected.

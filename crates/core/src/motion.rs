@@ -2,6 +2,7 @@
 
 mod cartesian;
 mod directions;
+mod lanes;
 mod loads;
 mod model_mode;
 mod quantity;
@@ -293,14 +294,9 @@ impl<P: Scalar> Forces<P> {
         if self.of_thesis {
             self.acceleration_by::<true, S>(time, state)
         } else {
-            self.acceleration_by_any(time, state)
+            // The models that the thesis does not have would be in the way of those that it has.
+            S::apart(|| self.acceleration_by::<false, S>(time, state))
         }
-    }
-
-    /// Not inlined: the models that the thesis does not have would be in the way of those that it has.
-    #[inline(never)]
-    fn acceleration_by_any<S: Over<P>>(&self, time: S, state: &State<S>) -> Vector3<S> {
-        self.acceleration_by::<false, S>(time, state)
     }
 
     #[inline(always)]

@@ -34,11 +34,21 @@ pub trait Scalar:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
+    /// How many numbers it holds side by side.
+    const WIDTH: usize;
+
     /// The answer to a comparison.
     type Mask: Copy;
 
     /// The number without its derivatives.
     type Value: Scalar<Value = Self::Value, Mask = Self::Mask>;
+
+    /// Calls a function that other flights do not need, and that is not to be in their way. Not in lanes, which would leave their instructions by
+    /// a call.
+    #[inline(always)]
+    fn apart<R>(function: impl FnOnce() -> R) -> R {
+        if Self::WIDTH == 1 { called(function) } else { function() }
+    }
 
     /// The number without its derivatives.
     fn value(self) -> Self::Value;
@@ -87,6 +97,8 @@ impl<D> Scalar for D
 where
     D: DualNum<Primitive = f64> + DualStruct<Real = f64> + nalgebra::Scalar + Copy + Chain,
 {
+    const WIDTH: usize = 1;
+
     type Mask = bool;
     type Value = f64;
 
@@ -211,6 +223,12 @@ impl Chain for Dual2_64 {
     fn angle(self, other: Self, value: f64, [by_self, by_other]: [f64; 2]) -> Self {
         Self::new(value, self.v1 * by_self + other.v1 * by_other, f64::NAN)
     }
+}
+
+/// Calls a function out of line.
+#[inline(never)]
+fn called<R>(function: impl FnOnce() -> R) -> R {
+    function()
 }
 
 /// `K` functions of `N` arguments that go by cells: which cell it is, depends on the values of the arguments.

@@ -549,11 +549,6 @@ impl Case {
                 .any(|thrust| thrust.specific_impulse.is_some())
     }
 
-    /// Whether anything is watched on the way, beside the stop altitude and the formulas of the models.
-    pub(crate) fn is_watched(&self) -> bool {
-        !self.events.is_empty() || !self.stop.when.is_empty() || self.stop.ceiling.is_some()
-    }
-
     /// Whether a phase of the flight begins with an event: it changes something, or an angle runs since then.
     pub(crate) fn begins_phase(&self, event: usize) -> bool {
         !self.events[event].then.is_none() || self.has_schedules_since(event)

@@ -11,14 +11,14 @@ mod step_view;
 mod stop_altitude;
 
 pub use bodies::{BodyError, Flights, SeparatedBody, simulate_with_bodies};
-pub use lanes::arrivals;
+pub use lanes::{arrivals, extremes_of_all};
 
 use crate::integrate::{AnyStep, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{Formulation, Singularity, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{ForFormulation, FormulationIn, Phase, Scenario, dispatch};
-use crate::trajectory::{Arrival, Extremes, Flown, StoredStep, Trajectory, Warning};
+use crate::trajectory::{Arrival, Extremes, Flown, Instant, StoredStep, Trajectory, Warning};
 use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
@@ -206,30 +206,96 @@ impl ForFormulation for Record<'_> {
         AnyStep: From<Step<N>>,
     {
         let Self { scenario, kept, interrupt } = self;
-        let case = scenario.case();
-        let mut flight = Flight::start(scenario, F::of_plain(case.forces()), interrupt)?;
-        let mut steps = Vec::with_capacity(if kept == Kept::Steps { TYPICAL_STEPS } else { 0 });
-        let mut peak_tracker = PeakTracker::new(&flight.motion, &flight.integrator, case.may_lift())?;
-        let start = flight.instant();
-        let arrival = fly(&mut flight, |view| {
-            peak_tracker.observe(view)?;
-            if kept == Kept::Extremes {
-                return Ok(());
-            }
-            let mode = view.motion.forces().mode();
-            steps.push(StoredStep { step: Step::clone(&view.step).into(), phase: view.phase, mode });
-            let held = steps.capacity() * size_of::<StoredStep>();
-            if steps.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(held) {
-                return Err(SimulationError::NoRoom { time: view.step.end_time });
-            }
-            Ok(())
-        })?;
+        let mut flight = Flight::start(scenario, F::of_plain(scenario.case().forces()), interrupt)?;
+        let mut recorder = Recorder::new(&flight, kept, interrupt)?;
+        let arrival = fly(&mut flight, |view| recorder.observe(view))?;
+        recorder.finish(flight, arrival)
+    }
+}
+
+/// What watches a flight step by step, and makes of it what is wanted.
+trait Observer<F, const N: usize> {
+    /// What is wanted.
+    type Outcome;
+
+    /// Notes a step.
+    fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError>;
+
+    /// What is wanted of the flight, which has ended.
+    fn finish(self, flight: Flight<F, N>, arrival: Arrival) -> Result<Self::Outcome, SimulationError>;
+}
+
+/// Wants the end alone.
+struct EndObserver;
+
+impl<F, const N: usize> Observer<F, N> for EndObserver {
+    type Outcome = Arrival;
+
+    fn observe(&mut self, _: &StepView<F, N>) -> Result<(), SimulationError> {
+        Ok(())
+    }
+
+    fn finish(self, _: Flight<F, N>, arrival: Arrival) -> Result<Arrival, SimulationError> {
+        Ok(arrival)
+    }
+}
+
+/// Keeps a flight.
+struct Recorder<'a> {
+    kept: Kept,
+    interrupt: &'a dyn Interrupt,
+    start: Instant,
+    steps: Vec<StoredStep>,
+    peak_tracker: PeakTracker,
+}
+
+impl<'a> Recorder<'a> {
+    /// At the start of a flight.
+    fn new<F: Formulation<N>, const N: usize>(
+        flight: &Flight<F, N>,
+        kept: Kept,
+        interrupt: &'a dyn Interrupt,
+    ) -> Result<Self, SimulationError> {
+        let may_lift = flight.scenario.case().may_lift();
+        Ok(Self {
+            kept,
+            interrupt,
+            start: flight.instant(),
+            steps: Vec::with_capacity(if kept == Kept::Steps { TYPICAL_STEPS } else { 0 }),
+            peak_tracker: PeakTracker::new(&flight.motion, &flight.integrator, may_lift)?,
+        })
+    }
+}
+
+impl<F: Formulation<N>, const N: usize> Observer<F, N> for Recorder<'_>
+where
+    AnyStep: From<Step<N>>,
+{
+    type Outcome = Flown;
+
+    fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError> {
+        let Self { kept, interrupt, steps, peak_tracker, .. } = self;
+        peak_tracker.observe(view)?;
+        if *kept == Kept::Extremes {
+            return Ok(());
+        }
+        let mode = view.motion.forces().mode();
+        steps.push(StoredStep { step: Step::clone(&view.step).into(), phase: view.phase, mode });
+        let held = steps.capacity() * size_of::<StoredStep>();
+        if steps.len() % STEPS_BETWEEN_LOOKS == 0 && !interrupt.may_hold(held) {
+            return Err(SimulationError::NoRoom { time: view.step.end_time });
+        }
+        Ok(())
+    }
+
+    fn finish(self, flight: Flight<F, N>, arrival: Arrival) -> Result<Flown, SimulationError> {
+        let Self { start, steps, mut peak_tracker, .. } = self;
         let end = flight.instant();
         peak_tracker.end(flight.motion.forces(), &end)?;
         let never_lifted = flight.is_held().then_some(Warning::NeverLifted { time: end.time });
         let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
         let FlightLog { mut phases, event_records, separations, warnings: others } = flight.log;
-        phases.insert(0, Phase::first(case));
+        phases.insert(0, Phase::first(flight.scenario.case()));
         warnings.extend(others);
         warnings.extend(never_lifted);
         Ok(Flown { start, steps, phases, event_records, separations, end, arrival, peaks, peaks_of_phases, warnings })

@@ -61,9 +61,16 @@ pub struct Interpolant<const N: usize> {
     coefficients: [[f64; N]; 7],
 }
 
-/// A trial step: the slopes of its stages and the state to which they lead.
+/// A trial step: the slopes of its stages and where they lead.
+#[derive(Debug)]
 pub(super) struct Trial<S, const N: usize> {
     slopes: [[S; N]; STAGES],
+    pub(super) outcome: Outcome<S, N>,
+}
+
+/// Where a trial step leads.
+#[derive(Debug)]
+pub(super) struct Outcome<S, const N: usize> {
     /// The state at the end, to order 8.
     pub(super) end: [S; N],
     /// The error of the mean slope by the embedded method of order 5.
@@ -72,8 +79,11 @@ pub(super) struct Trial<S, const N: usize> {
     pub(super) error_third: [S; N],
 }
 
+/// The slopes of stages on which the dense output rests.
+pub(super) type KeptSlopes<const N: usize> = [[f64; N]; KEPT];
+
 /// Tries a step of the given length; twelve stages less the first, which is the derivative at the start.
-#[inline]
+#[inline(always)]
 pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
     system: &F,
     time: S,
@@ -90,49 +100,66 @@ pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
             slopes[$stage] = system.derivative(later(time, length, tableau::NODES[$stage - 1]), &advanced(start, &slope, length));
         )*};
     }
-    stages!(1 2 3 4 5 6 7 8 9 10 11);
+    if S::WIDTH == 1 {
+        stages!(1 2 3 4 5 6 7 8 9 10 11);
+    } else {
+        // In lanes there is no time to save, and the program would be long.
+        for stage in 1..STAGES {
+            let slope = sum(&slopes, tableau::STAGES[stage - 1]);
+            slopes[stage] =
+                system.derivative(later(time, length, tableau::NODES[stage - 1]), &advanced(start, &slope, length));
+        }
+    }
     let mean = sum(&slopes, tableau::WEIGHTS);
     let third = sum(&slopes, tableau::THIRD);
-    Trial {
-        end: advanced(start, &mean, length),
-        error_fifth: sum(&slopes, tableau::ERROR_FIFTH),
-        error_third: std::array::from_fn(|i| mean[i] - third[i]),
-        slopes,
+    let mut error_third = mean;
+    for (error, third) in error_third.iter_mut().zip(third) {
+        *error -= third;
     }
+    let error_fifth = sum(&slopes, tableau::ERROR_FIFTH);
+    Trial { outcome: Outcome { end: advanced(start, &mean, length), error_fifth, error_third }, slopes }
 }
 
 impl<const N: usize> Trial<f64, N> {
-    /// The step, once its end is accepted and the rate of change there is known.
-    pub(super) fn into_step(
-        self,
-        start_time: f64,
-        end_time: f64,
-        start: &[f64; N],
-        end_derivative: [f64; N],
-    ) -> Step<N> {
-        Step {
-            start_time,
-            end_time,
-            start: *start,
-            end: self.end,
-            start_derivative: self.slopes[0],
-            end_derivative,
-            inside: Inside::Explicit(std::array::from_fn(|i| self.slopes[FIRST_KEPT + i])),
-        }
+    pub(super) fn kept_slopes(&self) -> KeptSlopes<N> {
+        let mut kept = [[0.0; N]; KEPT];
+        kept.copy_from_slice(&self.slopes[FIRST_KEPT..]);
+        kept
     }
 }
 
 impl<const N: usize, const L: usize> Trial<Lanes<L>, N> {
-    /// The trial of one lane.
-    pub(super) fn lane(&self, lane: usize) -> Trial<f64, N> {
-        let of_lane = |numbers: &[Lanes<L>; N]| numbers.map(|number| number.0[lane]);
-        Trial {
-            slopes: std::array::from_fn(|stage| of_lane(&self.slopes[stage])),
-            end: of_lane(&self.end),
-            error_fifth: of_lane(&self.error_fifth),
-            error_third: of_lane(&self.error_third),
-        }
+    /// Room for one.
+    pub(super) fn none() -> Self {
+        let none = [Lanes([0.0; L]); N];
+        Self { slopes: [none; STAGES], outcome: Outcome { end: none, error_fifth: none, error_third: none } }
     }
+
+    /// Where that of one lane leads.
+    pub(super) fn outcome_of(&self, lane: usize) -> Outcome<f64, N> {
+        let Outcome { end, error_fifth, error_third } = &self.outcome;
+        let [end, error_fifth, error_third] = [end, error_fifth, error_third].map(|numbers| of_lane(numbers, lane));
+        Outcome { end, error_fifth, error_third }
+    }
+
+    /// The slopes of one lane.
+    pub(super) fn kept_slopes_of(&self, lane: usize) -> KeptSlopes<N> {
+        let mut kept = [[0.0; N]; KEPT];
+        for (slope, lanes) in kept.iter_mut().zip(&self.slopes[FIRST_KEPT..]) {
+            *slope = of_lane(lanes, lane);
+        }
+        kept
+    }
+}
+
+/// The numbers of one lane.
+#[inline(always)]
+pub(super) fn of_lane<const N: usize, const L: usize>(numbers: &[Lanes<L>; N], lane: usize) -> [f64; N] {
+    let mut of_lane = [0.0; N];
+    for (one, lanes) in of_lane.iter_mut().zip(numbers) {
+        *one = lanes.0[lane];
+    }
+    of_lane
 }
 
 impl<const N: usize> Step<N> {
@@ -284,7 +311,7 @@ pub fn follow<F: System<S, N>, S: Scalar<Value = f64>, const N: usize>(
 ) -> [S; N] {
     let time = S::from(time);
     let system = &Once(system);
-    attempt(system, time, start, &system.derivative(time, start), length).end
+    attempt(system, time, start, &system.derivative(time, start), length).outcome.end
 }
 
 /// A system whose derivative stands in the program once, not in every stage: in wide numbers it is long.
@@ -306,7 +333,11 @@ fn later<S: Scalar>(time: S, length: S::Value, part: f64) -> S {
 /// The state after moving with a slope for a time.
 #[inline(always)]
 fn advanced<S: Scalar, const N: usize>(start: &[S; N], slope: &[S; N], time: S::Value) -> [S; N] {
-    std::array::from_fn(|i| start[i] + slope[i].scaled(time))
+    let mut end = *start;
+    for (component, slope) in end.iter_mut().zip(slope) {
+        *component += slope.scaled(time);
+    }
+    end
 }
 
 /// The weighted sum of slopes.

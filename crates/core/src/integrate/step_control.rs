@@ -224,7 +224,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
     }
 
     /// Whether the error of the trial step is small enough; proposes the length of the next one.
-    pub(super) fn accepts(&mut self, start: &[f64; N], trial: &step::Trial<f64, N>) -> bool {
+    pub(super) fn accepts(&mut self, start: &[f64; N], trial: &step::Outcome<f64, N>) -> bool {
         let error = self.error(start, trial);
         self.statistics.evaluations += step::TRIAL_EVALUATIONS;
         // The eighth root.
@@ -279,7 +279,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
     }
 
     /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
-    fn error(&self, start: &[f64; N], trial: &step::Trial<f64, N>) -> f64 {
+    fn error(&self, start: &[f64; N], trial: &step::Outcome<f64, N>) -> f64 {
         let [mut fifth, mut third] = [0.0; 2];
         for i in 0..N {
             let weight = 1.0 / (self.limits.relative_tolerance * self.size_of(i, start, &trial.end));

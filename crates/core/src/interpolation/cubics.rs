@@ -1,7 +1,5 @@
 //! Interpolation by one argument.
 
-use std::array::from_fn;
-
 use super::{Axis, Cubic, Hint, TableError, check, cubics, polynomial};
 use crate::scalar::{LookUp, Plain, Scalar};
 
@@ -101,9 +99,10 @@ impl<const K: usize> LookUp<1, K> for Inside<'_, K> {
     #[inline(always)]
     fn at<S: Plain>(&self, [x]: [S; 1]) -> [S; K] {
         let cell = &self.cubics.cells[self.cubics.axis.cell(x.value(), self.hint)];
-        from_fn(|k| {
-            let [origin, coefficients @ ..] = cell[k];
-            polynomial(x - origin, coefficients)
-        })
+        let mut values = [S::zero(); K];
+        for (value, [origin, coefficients @ ..]) in values.iter_mut().zip(cell) {
+            *value = polynomial(x - *origin, *coefficients);
+        }
+        values
     }
 }

@@ -1,7 +1,5 @@
 //! Interpolation by two arguments.
 
-use std::array::from_fn;
-
 use super::{AT_END, Axis, Hint, TableError, check, cubics, polynomial, slope_between};
 use crate::scalar::{LookUp, Plain, Scalar};
 
@@ -120,8 +118,15 @@ impl LookUp<2, 2> for Inside<'_> {
         let across = &across[first.cell(x.value(), &self.hints[0])];
         let cell = second.cell(y.value(), &self.hints[1]);
         let y = y - origins[cell];
-        let cubics = across.rows.map(|row| &along[cell * rows + row]);
-        from_fn(|k| across.between_rows(x, cubics.map(|cubic| polynomial(y, cubic.map(|both| both[k])))))
+        let mut on_rows = [[S::zero(); 4]; 2];
+        for (place, row) in across.rows.into_iter().enumerate() {
+            let [c0, c1, c2, c3] = &along[cell * rows + row];
+            for (k, values) in on_rows.iter_mut().enumerate() {
+                values[place] = polynomial(y, [c0[k], c1[k], c2[k], c3[k]]);
+            }
+        }
+        let [first, second] = on_rows;
+        [across.between_rows(x, first), across.between_rows(x, second)]
     }
 }
 

@@ -107,12 +107,12 @@ impl<P: Scalar> Forces<P> {
                 let direction = along(axis, &self.models.planet, time, &state.planet_fixed());
                 Some(Push { acceleration: direction * acceleration, throttle: S::one() })
             }
-            ThrustDirection::Steered => Some(self.push_of_engines(burn, time, state, flow, aerodynamic)),
+            ThrustDirection::Steered => Some(S::apart(|| self.push_of_engines(burn, time, state, flow, aerodynamic))),
         }
     }
 
     /// The thrust of engines: as the demand has it, but for what the load limit takes.
-    #[inline(never)]
+    #[inline(always)]
     fn push_of_engines<S: Over<P>>(
         &self,
         burn: &Burn<P>,

@@ -1,6 +1,5 @@
 //! Several numbers side by side, for which compilers use the vector registers of the processor.
 
-use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
@@ -10,13 +9,34 @@ use crate::elementary;
 
 /// `L` numbers that go through the same operations, each by itself: lane by lane the digits are those of `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
 pub struct Lanes<const L: usize>(pub [f64; L]);
 
 impl<const L: usize> Lanes<L> {
+    /// A number for each lane. A plain loop, of which compilers make vectors.
+    #[inline(always)]
+    fn each(number: impl Fn(usize) -> f64) -> Self {
+        let mut lanes = [0.0; L];
+        for (lane, place) in lanes.iter_mut().enumerate() {
+            *place = number(lane);
+        }
+        Self(lanes)
+    }
+
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(function))
+        Self::each(|lane| function(self.0[lane]))
     }
+}
+
+/// Rows of numbers, one for each lane, as numbers in lanes.
+#[inline(always)]
+fn transposed<const K: usize, const L: usize>(rows: &[[f64; K]; L]) -> [Lanes<L>; K] {
+    let mut columns = [Lanes([0.0; L]); K];
+    for (k, column) in columns.iter_mut().enumerate() {
+        *column = Lanes::each(|lane| rows[lane][k]);
+    }
+    columns
 }
 
 macro_rules! operators {
@@ -26,7 +46,7 @@ macro_rules! operators {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(from_fn(|lane| self.0[lane].$method(other.0[lane])))
+                Self::each(|lane| self.0[lane].$method(other.0[lane]))
             }
         }
 
@@ -98,6 +118,8 @@ impl<const L: usize> One for Lanes<L> {
 }
 
 impl<const L: usize> Scalar for Lanes<L> {
+    const WIDTH: usize = L;
+
     type Mask = [bool; L];
     type Value = Self;
 
@@ -113,24 +135,34 @@ impl<const L: usize> Scalar for Lanes<L> {
 
     #[inline(always)]
     fn less_than(self, other: f64) -> [bool; L] {
-        self.0.map(|number| number < other)
+        let mut mask = [false; L];
+        for (answer, number) in mask.iter_mut().zip(self.0) {
+            *answer = number < other;
+        }
+        mask
     }
 
     #[inline(always)]
     fn select(mask: [bool; L], chosen: Self, otherwise: Self) -> Self {
-        Self(from_fn(|lane| if mask[lane] { chosen.0[lane] } else { otherwise.0[lane] }))
+        Self::each(|lane| if mask[lane] { chosen.0[lane] } else { otherwise.0[lane] })
     }
 
     #[inline(always)]
     fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
-        let rows = self.0.map(row);
-        from_fn(|k| Self(from_fn(|lane| rows[lane][k])))
+        let mut rows = [[0.0; K]; L];
+        for (place, number) in rows.iter_mut().zip(self.0) {
+            *place = row(number);
+        }
+        transposed(&rows)
     }
 
     #[inline(always)]
     fn look_up<const N: usize, const K: usize>(at: [Self; N], table: &impl LookUp<N, K>) -> [Self; K] {
-        let found: [[f64; K]; L] = from_fn(|lane| table.at(at.map(|number| number.0[lane])));
-        from_fn(|k| Self(from_fn(|lane| found[lane][k])))
+        let mut found = [[0.0; K]; L];
+        for (lane, place) in found.iter_mut().enumerate() {
+            *place = table.at(at.map(|number| number.0[lane]));
+        }
+        transposed(&found)
     }
 
     #[inline(always)]
@@ -155,16 +187,26 @@ impl<const L: usize> Scalar for Lanes<L> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let all = if self.0.iter().all(|angle| elementary::has_few_quadrants(*angle)) {
-            self.0.map(elementary::sin_cos_of_few_quadrants)
+        let are_few = self.0.iter().fold(true, |all, angle| all & elementary::has_few_quadrants(*angle));
+        let [mut sines, mut cosines] = [[0.0; L]; 2];
+        if are_few {
+            for lane in 0..L {
+                (sines[lane], cosines[lane]) = elementary::sin_cos_of_few_quadrants(self.0[lane]);
+            }
         } else {
-            self.0.map(elementary::sin_cos)
-        };
-        (Self(all.map(|(sine, _)| sine)), Self(all.map(|(_, cosine)| cosine)))
+            for lane in 0..L {
+                (sines[lane], cosines[lane]) = elementary::sin_cos(self.0[lane]);
+            }
+        }
+        (Self(sines), Self(cosines))
     }
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        Self(from_fn(|lane| elementary::atan2(self.0[lane], x.0[lane])))
+        let mut angles = self;
+        for (angle, x) in angles.0.iter_mut().zip(x.0) {
+            *angle = elementary::atan2(*angle, x);
+        }
+        angles
     }
 }

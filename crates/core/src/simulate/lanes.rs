@@ -1,126 +1,279 @@
 //! Many flights at once, in the lanes of one computation.
 
-use std::array::from_fn;
-
 use super::flight::Flight;
-use super::{SimulationError, arrival};
-use crate::integrate::{System, try_in_lanes};
+use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, extremes};
+use crate::integrate::{AnyStep, LaneSteps, Step, System, are_used};
 use crate::interrupt::Interrupt;
-use crate::motion::{Cartesian, Forces, Formulation, Parameters, Spherical};
+use crate::motion::{Cartesian, Forces, Formulation};
 use crate::scalar::Lanes;
-use crate::scenario::{Case, Equations, Scenario};
-use crate::trajectory::Arrival;
+use crate::scenario::{Equations, Scenario, StateLayout};
+use crate::trajectory::{Arrival, Extremes};
 
-/// The end of a flight.
-type End = Result<Arrival, SimulationError>;
+/// So many flights share a computation.
+const LANES: usize = 8;
+/// So many are under way at once, so that those of one mode are enough to fill the lanes.
+const UNDER_WAY: usize = 96;
 
-/// Flies scenarios, `L` of them at once, to their ends: what [`arrival`](super::arrival) gives for each, to the last digit.
+/// Flies scenarios to their ends: what [`arrival`](super::arrival) gives for each, to the last digit.
 ///
-/// Every flight has steps of its own, and its lane takes the next one when it has ended. Neighbours share the lanes
-/// if their models and their formulations are the same. Where the formulas of models change on the way, a flight is flown alone,
-/// since every lane would need its own; so are heated flights, and those on which something is watched. Where a flight is stiff, it leaves
-/// its lane for as long.
-pub fn arrivals<const L: usize>(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<End> {
-    let shared = |scenario: &Scenario| {
-        let case = scenario.case();
-        (case.models(), case.solver.equations, flies_alone(case))
-    };
-    let mut ends = Vec::with_capacity(scenarios.len());
-    for group in scenarios.chunk_by(|a, b| shared(a) == shared(b)) {
-        let Some(case) = group.first().map(Scenario::case) else { continue };
-        if case.forces().has_switches() || flies_alone(case) {
-            ends.extend(group.iter().map(|scenario| arrival(scenario, interrupt)));
-            continue;
-        }
-        ends.extend(match case.solver.equations {
-            Equations::Cartesian => fly_in_lanes::<_, _, L>(group, interrupt, Cartesian, Cartesian),
-            Equations::Spherical => fly_in_lanes::<_, _, L>(group, interrupt, Spherical, Spherical),
-        });
-    }
-    ends
+/// Flights by Cartesian equations share the lanes of a computation while their models and modes are the same; each has steps of its own. The others,
+/// and those that are stiff for as long, are flown one by one.
+pub fn arrivals(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Arrival, SimulationError>> {
+    let mut outcomes = Outcomes::new(scenarios);
+    outcomes.fill_in_lanes::<6, _>(StateLayout::Motion, interrupt, |_| Ok(EndObserver));
+    outcomes.fill_in_lanes::<7, _>(StateLayout::HeatLoad, interrupt, |_| Ok(EndObserver));
+    outcomes.fill_in_lanes::<8, _>(StateLayout::HeatLoadAndMass, interrupt, |_| Ok(EndObserver));
+    outcomes.complete(|scenario| arrival(scenario, interrupt))
 }
 
-/// Whether more may happen in a flight than lanes know: something is watched, heated or held, or made of parts.
-fn flies_alone(case: &Case) -> bool {
-    case.is_watched() || case.heating.is_some() || case.hold_down || !case.parts.is_empty()
+/// Flies scenarios as [`arrivals`] does, and keeps of each what [`extremes`](super::extremes) does.
+pub fn extremes_of_all(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Extremes, SimulationError>> {
+    let mut outcomes = Outcomes::new(scenarios);
+    outcomes.fill_in_lanes::<6, _>(StateLayout::Motion, interrupt, |flight| {
+        Recorder::new(flight, Kept::Extremes, interrupt)
+    });
+    outcomes.fill_in_lanes::<7, _>(StateLayout::HeatLoad, interrupt, |flight| {
+        Recorder::new(flight, Kept::Extremes, interrupt)
+    });
+    outcomes.fill_in_lanes::<8, _>(StateLayout::HeatLoadAndMass, interrupt, |flight| {
+        Recorder::new(flight, Kept::Extremes, interrupt)
+    });
+    let outcomes = outcomes.map(|scenario, flown| Extremes::new(scenario.case().clone(), flown));
+    outcomes.complete(|scenario| extremes(scenario, interrupt))
 }
 
-/// A flight, and its place among the scenarios.
-struct Lane<'a, F> {
-    index: usize,
-    flight: Flight<'a, F, 6>,
-}
-
-/// Flies scenarios of the same models in a formulation, of which each has one `alone` and all lanes have one `in_lanes`.
-fn fly_in_lanes<'a, F: Formulation<6>, M: System<Lanes<L>, 6>, const L: usize>(
+/// What is known of each scenario.
+struct Outcomes<'a, T> {
     scenarios: &'a [Scenario],
+    known: Vec<Option<Result<T, SimulationError>>>,
+}
+
+impl<'a, T> Outcomes<'a, T> {
+    fn new(scenarios: &'a [Scenario]) -> Self {
+        Self { scenarios, known: scenarios.iter().map(|_| None).collect() }
+    }
+
+    /// Flies those that fly in lanes, and whose states are of a layout.
+    fn fill_in_lanes<const N: usize, O: Observer<Cartesian, N, Outcome = T>>(
+        &mut self,
+        layout: StateLayout,
+        interrupt: &'a dyn Interrupt,
+        observer: impl Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
+    ) where
+        Cartesian: Formulation<N>,
+        Cartesian<Lanes<LANES>>: System<Lanes<LANES>, N>,
+        AnyStep: From<Step<N>>,
+    {
+        let of_layout = |scenario: &Scenario| {
+            let case = scenario.case();
+            case.solver.equations == Equations::Cartesian && case.state_layout() == layout
+        };
+        let of_layout: Vec<usize> =
+            (0..self.scenarios.len()).filter(|index| of_layout(&self.scenarios[*index])).collect();
+        // Two would not be faster together.
+        if of_layout.len() <= 2 || are_used().is_none() {
+            return;
+        }
+        let mut fleet = Fleet {
+            outcomes: self,
+            coming: of_layout.into_iter(),
+            interrupt,
+            observer,
+            under_way: Vec::new(),
+            groups: Vec::new(),
+        };
+        fleet.fly();
+    }
+
+    fn map<U>(self, to: impl Fn(&Scenario, T) -> U) -> Outcomes<'a, U> {
+        let Self { scenarios, known } = self;
+        let map = |(scenario, outcome): (&Scenario, Option<Result<T, _>>)| {
+            outcome.map(|outcome| outcome.map(|outcome| to(scenario, outcome)))
+        };
+        Outcomes { scenarios, known: scenarios.iter().zip(known).map(map).collect() }
+    }
+
+    /// All outcomes, of which those that are not known yet are flown alone.
+    fn complete(self, alone: impl Fn(&Scenario) -> Result<T, SimulationError>) -> Vec<Result<T, SimulationError>> {
+        let Self { scenarios, known } = self;
+        scenarios.iter().zip(known).map(|(scenario, outcome)| outcome.unwrap_or_else(|| alone(scenario))).collect()
+    }
+}
+
+/// Flights that are under way, and scenarios that are to come.
+struct Fleet<'a, 'b, T, M, O, const N: usize> {
+    outcomes: &'b mut Outcomes<'a, T>,
+    coming: std::vec::IntoIter<usize>,
     interrupt: &'a dyn Interrupt,
-    alone: impl Fn(Forces) -> F,
-    in_lanes: impl Fn(Forces<Lanes<L>>) -> M,
-) -> Vec<End> {
-    let mut ends: Vec<End> = scenarios.iter().map(|_| Err(SimulationError::Interrupted { time: 0.0 })).collect();
-    let mut waiting = scenarios.iter().enumerate();
-    let mut next = |ends: &mut [End]| {
-        let start = |scenario: &'a Scenario| Flight::start(scenario, alone(scenario.case().forces()), interrupt);
-        waiting.find_map(|(index, scenario)| {
-            let begun = start(scenario).and_then(|mut flight| Ok((flight.begin()?, flight)));
+    observer: M,
+    /// By their places; those that have ended leave room for others.
+    under_way: Vec<Option<Flying<'a, O, N>>>,
+    groups: Vec<Vec<usize>>,
+}
+
+/// A flight under way.
+struct Flying<'a, O, const N: usize> {
+    /// Of its scenario.
+    index: usize,
+    flight: Flight<'a, Cartesian, N>,
+    observer: O,
+}
+
+impl<T, M, O, const N: usize> Fleet<'_, '_, T, M, O, N>
+where
+    M: Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
+    O: Observer<Cartesian, N, Outcome = T>,
+    Cartesian: Formulation<N>,
+    Cartesian<Lanes<LANES>>: System<Lanes<LANES>, N>,
+{
+    /// Flies all, the largest group of those whose forces are alike first, as the lanes are full the longest then.
+    fn fly(&mut self) {
+        loop {
+            self.start_more();
+            let largest = (0..self.groups.len()).max_by_key(|group| self.groups[*group].len());
+            let Some(largest) = largest else { return };
+            let group = self.groups.swap_remove(largest);
+            self.fly_group(group);
+        }
+    }
+
+    /// Starts flights until enough are under way.
+    fn start_more(&mut self) {
+        let mut count = self.under_way.iter().flatten().count();
+        while count < UNDER_WAY {
+            let Some(index) = self.coming.next() else { return };
+            let scenario = &self.outcomes.scenarios[index];
+            let begun =
+                Flight::start(scenario, Cartesian(scenario.case().forces()), self.interrupt).and_then(|mut flight| {
+                    let observer = (self.observer)(&flight)?;
+                    Ok((flight.begin()?, Flying { index, flight, observer }))
+                });
             match begun {
-                Ok((None, flight)) => return Some(Lane { index, flight }),
-                Ok((Some(arrival), _)) => ends[index] = Ok(arrival),
-                Err(error) => ends[index] = Err(error),
-            }
-            None
-        })
-    };
-    let mut lanes: [Option<Lane<F>>; L] = from_fn(|_| next(&mut ends));
-    let mut system = None;
-    while lanes.iter().any(Option::is_some) {
-        let cases = lanes.each_ref().map(|lane| scenarios[lane.as_ref().map_or(0, |lane| lane.index)].case());
-        let motion = system.get_or_insert_with(|| in_lanes(forces(cases)));
-        let flights = lanes.each_mut().map(|lane| {
-            let Flight { integrator, motion, scenario, .. } = &mut lane.as_mut()?.flight;
-            Some((integrator, &*motion, scenario.case().stop.time))
-        });
-        let steps = try_in_lanes(motion, flights);
-        for (lane, step) in lanes.iter_mut().zip(steps) {
-            let (Some(Lane { index, flight }), Some(step)) = (lane.as_mut(), step) else { continue };
-            let end = match step {
-                Ok(step) => flight.pass(&step, &mut |_| Ok(())).transpose(),
-                Err(error) => Some(Err(flight.failure(error))),
-            };
-            let end = end.or_else(|| fly_while_stiff(flight));
-            if let Some(end) = end {
-                ends[*index] = end;
-                *lane = next(&mut ends);
-                system = None;
+                Ok((None, flying)) => {
+                    let free = self.under_way.iter().position(Option::is_none).unwrap_or_else(|| {
+                        self.under_way.push(None);
+                        self.under_way.len() - 1
+                    });
+                    self.under_way[free] = Some(flying);
+                    self.go_on(free);
+                    count += 1;
+                }
+                Ok((Some(arrival), flying)) => self.end(flying, arrival),
+                Err(error) => self.outcomes.known[index] = Some(Err(error)),
             }
         }
     }
-    ends
-}
 
-/// Flies alone, out of the lanes, as long as steps are implicit; returns the end of the flight, if it came to that.
-fn fly_while_stiff<F: Formulation<6>>(flight: &mut Flight<F, 6>) -> Option<End> {
-    while flight.integrator.is_stiff() {
-        let end = flight.advance().and_then(|step| flight.pass(&step, &mut |_| Ok(()))).transpose();
-        if end.is_some() {
-            return end;
+    /// Keeps what is wanted of a flight that has ended.
+    fn end(&mut self, Flying { index, flight, observer }: Flying<'_, O, N>, arrival: Arrival) {
+        self.outcomes.known[index] = Some(observer.finish(flight, arrival));
+    }
+
+    /// Ends the flight at a place, or lets it go on.
+    fn after(&mut self, place: usize, passed: Result<Option<Arrival>, SimulationError>) -> bool {
+        match passed {
+            Ok(None) => return true,
+            Ok(Some(arrival)) => {
+                if let Some(flying) = self.under_way[place].take() {
+                    self.end(flying, arrival);
+                }
+            }
+            Err(error) => {
+                if let Some(flying) = self.under_way[place].take() {
+                    self.outcomes.known[flying.index] = Some(Err(error));
+                }
+            }
+        }
+        false
+    }
+
+    /// Lets a flight go on among its like; while it is stiff, alone.
+    fn go_on(&mut self, place: usize) {
+        while let Some(Flying { flight, observer, .. }) = &mut self.under_way[place] {
+            if !flight.integrator.is_stiff() {
+                let group = self.group_of(place).unwrap_or_else(|| {
+                    self.groups.push(Vec::new());
+                    self.groups.len() - 1
+                });
+                self.groups[group].push(place);
+                return;
+            }
+            let passed = flight.advance().and_then(|step| flight.pass(&step, &mut |view| observer.observe(view)));
+            self.after(place, passed);
         }
     }
-    None
-}
 
-/// The forces on the vehicles of these cases, whose models are the same.
-fn forces<const L: usize>(cases: [&Case; L]) -> Forces<Lanes<L>> {
-    let parameters = cases.map(Case::parameters);
-    let of_lanes = |number: fn(&Parameters<f64>) -> f64| Lanes(parameters.each_ref().map(number));
-    let parameters = Parameters {
-        mass: of_lanes(|parameters| parameters.mass),
-        reference_area: of_lanes(|parameters| parameters.reference_area),
-        lift_coefficient: of_lanes(|parameters| parameters.lift_coefficient),
-        drag_coefficient: of_lanes(|parameters| parameters.drag_coefficient),
-        density: of_lanes(|parameters| parameters.density),
-        bank_angle: of_lanes(|parameters| parameters.bank_angle),
-    };
-    Forces::new(cases[0].models(), parameters)
+    /// The group of the flights that are like the one at a place.
+    fn group_of(&self, place: usize) -> Option<usize> {
+        let forces = |place: usize| self.under_way[place].as_ref().map(|flying| flying.flight.motion.forces());
+        let own = forces(place)?;
+        let alike =
+            |group: &Vec<usize>| group.first().and_then(|first| forces(*first)).is_some_and(|of| of.are_alike(own));
+        self.groups.iter().position(alike)
+    }
+
+    /// Those that wait to fly with others of such forces, flights that begin so included.
+    fn more_like(&mut self, like: &Forces) -> Vec<usize> {
+        self.start_more();
+        let forces = |place: usize| self.under_way[place].as_ref().map(|flying| flying.flight.motion.forces());
+        let alike =
+            |group: &Vec<usize>| group.first().and_then(|first| forces(*first)).is_some_and(|of| of.are_alike(like));
+        self.groups.iter().position(alike).map(|group| self.groups.swap_remove(group)).unwrap_or_default()
+    }
+
+    /// Flies those of a group, and others that come to it, until no more are left.
+    fn fly_group(&mut self, mut waiting: Vec<usize>) {
+        let first = waiting.first().and_then(|place| self.under_way[*place].as_ref());
+        let Some(like) = first.map(|first| first.flight.motion.forces().clone()) else { return };
+        let mut system = Cartesian(like.in_lanes::<LANES>());
+        let mut steps = LaneSteps::<N, LANES>::default();
+        let mut lanes = [None; LANES];
+        loop {
+            for (lane, place) in lanes.iter_mut().enumerate() {
+                while place.is_none() {
+                    if waiting.is_empty() && self.coming.len() > 0 {
+                        waiting = self.more_like(&like);
+                    }
+                    let Some(next) = waiting.pop() else { break };
+                    let Some(flying) = &self.under_way[next] else { continue };
+                    system.0.put(lane, flying.flight.motion.forces());
+                    *place = Some(next);
+                }
+                if let Some(at) = *place
+                    && let Some(Flying { flight, .. }) = &mut self.under_way[at]
+                {
+                    let end = flight.horizon();
+                    if let Err(error) = steps.load(lane, &mut flight.integrator, &flight.motion, end) {
+                        let error = flight.failure(error);
+                        self.after(at, Err(error));
+                        *place = None;
+                    }
+                }
+            }
+            if lanes.iter().all(Option::is_none) {
+                if waiting.is_empty() {
+                    return;
+                }
+                continue;
+            }
+            steps.attempt(&system);
+            for (lane, place) in lanes.iter_mut().enumerate() {
+                let Some(at) = *place else { continue };
+                let Some(Flying { flight, observer, .. }) = &mut self.under_way[at] else { continue };
+                let Some(step) = steps.judge(lane, &mut flight.integrator, &flight.motion) else { continue };
+                let passed = flight.pass(&step, &mut |view| observer.observe(view));
+                let goes_on = self.after(at, passed);
+                let Some(Flying { flight, .. }) = self.under_way[at].as_ref().filter(|_| goes_on) else {
+                    *place = None;
+                    continue;
+                };
+                if flight.integrator.is_stiff() || !flight.motion.forces().are_alike(&like) {
+                    *place = None;
+                    self.go_on(at);
+                } else {
+                    system.0.put(lane, flight.motion.forces());
+                }
+            }
+        }
+    }
 }

@@ -1,0 +1,175 @@
+//! Trial steps of several integrators at once, in the vector registers of the processor.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{IntegrationError, Integrator, Step, StepBounds, System, step};
+use crate::scalar::Lanes;
+
+/// A trial step of each of `L` integrators, computed at once by a system in lanes: to the last digit what each would try alone.
+///
+/// In turn, every integrator is [loaded](Self::load), all steps are [tried](Self::attempt), and every integrator [judges](Self::judge) its own.
+/// Lanes without an integrator repeat what was in them.
+#[derive(Debug)]
+pub struct LaneSteps<const N: usize, const L: usize> {
+    time: Lanes<L>,
+    length: Lanes<L>,
+    end_time: Lanes<L>,
+    state: [Lanes<L>; N],
+    derivative: [Lanes<L>; N],
+    trial: step::Trial<Lanes<L>, N>,
+    end_derivative: [Lanes<L>; N],
+}
+
+impl<const N: usize, const L: usize> Default for LaneSteps<N, L> {
+    fn default() -> Self {
+        let none = Lanes([0.0; L]);
+        Self {
+            time: none,
+            length: none,
+            end_time: none,
+            state: [none; N],
+            derivative: [none; N],
+            trial: step::Trial::none(),
+            end_derivative: [none; N],
+        }
+    }
+}
+
+impl<const N: usize, const L: usize> LaneSteps<N, L> {
+    /// Loads the next explicit step of an integrator with its own system into a lane; it ends at `end` at the latest.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::advance`].
+    pub fn load<F: StepBounds<N>>(
+        &mut self,
+        lane: usize,
+        integrator: &mut Integrator<'_, N>,
+        system: &F,
+        end: f64,
+    ) -> Result<(), IntegrationError> {
+        self.end_time.0[lane] = integrator.prepare(system, end)?;
+        self.time.0[lane] = integrator.control.time;
+        self.length.0[lane] = integrator.control.length;
+        for i in 0..N {
+            self.state[i].0[lane] = integrator.state[i];
+            self.derivative[i].0[lane] = integrator.derivative[i];
+        }
+        Ok(())
+    }
+
+    /// Tries the steps of all lanes.
+    pub fn attempt<M: System<Lanes<L>, N>>(&mut self, system: &M) {
+        isa::attempt(self, system);
+    }
+
+    /// Lets the integrator of a lane take its step, if that is exact enough; otherwise its next one will be shorter.
+    pub fn judge<F: StepBounds<N>>(
+        &self,
+        lane: usize,
+        integrator: &mut Integrator<'_, N>,
+        system: &F,
+    ) -> Option<Step<N>> {
+        let rest = |_: &[f64; N]| (step::of_lane(&self.end_derivative, lane), self.trial.kept_slopes_of(lane));
+        integrator.judge(system, self.trial.outcome_of(lane), self.end_time.0[lane], rest)
+    }
+
+    #[inline(always)]
+    fn attempt_here<M: System<Lanes<L>, N>>(&mut self, system: &M) {
+        self.trial = step::attempt(system, self.time, &self.state, &self.derivative, self.length);
+        self.end_derivative = system.derivative(self.end_time, &self.trial.outcome.end);
+    }
+}
+
+static UNUSED: AtomicBool = AtomicBool::new(false);
+
+/// From now on flights are flown one by one.
+pub fn use_no_lanes() {
+    UNUSED.store(true, Ordering::Relaxed);
+}
+
+/// The instructions by which lanes are computed; none where flights are flown one by one: as was asked for, or since the processor has no vectors of
+/// four numbers.
+pub fn are_used() -> Option<&'static str> {
+    let unused = UNUSED.load(Ordering::Relaxed);
+    isa::widest().filter(|_| !unused)
+}
+
+/// The instruction sets among which the processor decides when the program runs.
+#[cfg(target_arch = "x86_64")]
+mod isa {
+    use std::sync::LazyLock;
+
+    use super::{LaneSteps, Lanes, System};
+
+    #[derive(Clone, Copy)]
+    enum InstructionSet {
+        Avx512,
+        Avx2,
+        Baseline,
+    }
+
+    static WIDEST: LazyLock<InstructionSet> = LazyLock::new(|| {
+        if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512bw")
+        {
+            InstructionSet::Avx512
+        } else if is_x86_feature_detected!("avx2") {
+            InstructionSet::Avx2
+        } else {
+            InstructionSet::Baseline
+        }
+    });
+
+    pub(super) fn widest() -> Option<&'static str> {
+        match *WIDEST {
+            InstructionSet::Avx512 => Some("avx512"),
+            InstructionSet::Avx2 => Some("avx2"),
+            InstructionSet::Baseline => None,
+        }
+    }
+
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+    fn by_avx512<M: System<Lanes<L>, N>, const N: usize, const L: usize>(steps: &mut LaneSteps<N, L>, system: &M) {
+        steps.attempt_here(system);
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn by_avx2<M: System<Lanes<L>, N>, const N: usize, const L: usize>(steps: &mut LaneSteps<N, L>, system: &M) {
+        steps.attempt_here(system);
+    }
+
+    pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
+        steps: &mut LaneSteps<N, L>,
+        system: &M,
+    ) {
+        // The one place where the program is not safe by its types alone: functions of wider instructions may be called where the processor has
+        // them, which is asked here and nowhere else.
+        #[expect(unsafe_code, reason = "the compiler does not know on which processor the program will run")]
+        match *WIDEST {
+            // SAFETY: the processor has these instructions.
+            InstructionSet::Avx512 => unsafe { by_avx512(steps, system) },
+            // SAFETY: the processor has these instructions.
+            InstructionSet::Avx2 => unsafe { by_avx2(steps, system) },
+            InstructionSet::Baseline => steps.attempt_here(system),
+        }
+    }
+}
+
+/// Other processors have vectors of two numbers at least, in which lanes gain little.
+#[cfg(not(target_arch = "x86_64"))]
+mod isa {
+    use super::{LaneSteps, Lanes, System};
+
+    pub(super) fn widest() -> Option<&'static str> {
+        None
+    }
+
+    pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
+        steps: &mut LaneSteps<N, L>,
+        system: &M,
+    ) {
+        steps.attempt_here(system);
+    }
+}
