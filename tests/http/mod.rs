@@ -21,6 +21,7 @@ mod batch;
 mod bodies;
 mod columns;
 mod convert;
+mod digits;
 mod events;
 mod frames;
 mod heating;

@@ -37,8 +37,9 @@ pub use site::Site;
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
+use crate::elementary::sin_cos;
 use crate::scalar::{Scalar, length};
 
 /// Position and velocity relative to the rotating planet, in its own frame (ECEF for the Earth).
@@ -52,6 +53,16 @@ pub struct PlanetFixed<S: nalgebra::Scalar> {
 
 /// A rotation of components from one frame to another.
 pub type Rotation = Rotation3<f64>;
+
+/// The rotation by an angle, rad, about an axis: x, y or z by its number from 0.
+fn rotation_about(axis: usize, angle: f64) -> Rotation {
+    let (sine, cosine) = sin_cos(angle);
+    let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
+    let mut matrix = Matrix3::identity();
+    (matrix[(next, next)], matrix[(next, last)]) = (cosine, -sine);
+    (matrix[(last, next)], matrix[(last, last)]) = (sine, cosine);
+    Rotation3::from_matrix_unchecked(matrix)
+}
 
 /// The directions east, north and up at a place.
 #[derive(Clone, Copy, Debug)]

@@ -15,6 +15,8 @@ const ONE: u64 = 0x3ff0_0000_0000_0000;
 const LN_2: [f64; 2] = [0.693_147_180_559_663, 2.823_529_056_303_157_7e-13];
 /// π/2: twice 43 bits, so that products with the numbers of quadrants are exact, and the rest.
 const QUADRANT: [f64; 3] = [1.570_796_326_794_834_4, 6.223_372_171_896_261e-14, 3.521_559_865_183_2e-27];
+/// Exponents up to this one, either way, have exponentials that lose no digits.
+const MOST_EXPONENT: f64 = 708.0;
 /// Angles up to this one, rad, have numbers of quadrants of ten bits.
 const MOST_QUADRANTS: f64 = 1600.0;
 
@@ -28,6 +30,38 @@ const MOST_QUADRANTS: f64 = 1600.0;
 /// ```
 #[inline(always)]
 pub fn exp(x: f64) -> f64 {
+    if has_normal_exponential(x) { normal_exponential(x) } else { exponential_out_of_range(x) }
+}
+
+/// Whether [`normal_exponential`] is exact.
+#[inline(always)]
+pub(crate) fn has_normal_exponential(x: f64) -> bool {
+    x.abs() <= MOST_EXPONENT
+}
+
+/// eˣ where that is tiny or huge, or x not a number.
+#[cold]
+#[inline(never)]
+pub(crate) fn exponential_out_of_range(x: f64) -> f64 {
+    // Beyond, it is 0 or infinite; what is not a number stays so.
+    let x = if x < -746.0 { -746.0 } else { x };
+    let x = if x > 710.0 { 710.0 } else { x };
+    // In two parts, as 2ᵏ alone may be out of range.
+    let [e, k] = exponential(x);
+    let half = rounded(k * 0.5);
+    e * power_of_two(half) * power_of_two(k - half)
+}
+
+/// eˣ of a number that [has a normal one](has_normal_exponential).
+#[inline(always)]
+pub(crate) fn normal_exponential(x: f64) -> f64 {
+    let [e, k] = exponential(x);
+    e * power_of_two(k)
+}
+
+/// e and k, of which eˣ is e 2ᵏ.
+#[inline(always)]
+fn exponential(x: f64) -> [f64; 2] {
     const Q: [f64; 11] = [
         0.5,
         0.166_666_666_666_666_82,
@@ -41,24 +75,20 @@ pub fn exp(x: f64) -> f64 {
         2.511_208_447_545_167e-8,
         2.082_658_841_576_385e-9,
     ];
-    // Beyond, it is 0 or infinite; what is not a number stays so.
-    let x = if x < -746.0 { -746.0 } else { x };
-    let x = if x > 710.0 { 710.0 } else { x };
     // x = k ln 2 + r, with what r has lost by rounding
     let k = rounded(x * std::f64::consts::LOG2_E);
     let (high, low) = (x - k * LN_2[0], k * LN_2[1]);
     let r = high - low;
     let lost = (high - r) - low;
-    // eʳ = 1 + r + r² q(r)
+    // eʳ = 1 + r + r² q(r). What waits for the least comes last, and of the sums those parts first that are known first.
     let r2 = r * r;
     let r4 = r2 * r2;
+    let r6 = r4 * r2;
     let pair = |i: usize| Q[i] + r * Q[i + 1];
-    let [first, second] = [pair(0) + r2 * pair(2), pair(4) + r2 * pair(6)];
-    let q = first + r4 * (second + r4 * (pair(8) + r2 * Q[10]));
-    let e = 1.0 + (r + (r2 * q + lost));
-    // In two parts, as 2ᵏ alone might be out of range.
-    let half = rounded(k * 0.5);
-    e * power_of_two(half) * power_of_two(k - half)
+    let [first, second, third] = [pair(0) + r2 * pair(2), pair(4) + r2 * pair(6), pair(8) + r2 * Q[10]];
+    let sum = 1.0 + r;
+    let rest = ((1.0 - sum) + r) + lost;
+    [sum + ((rest + r2 * first) + (r6 * second + (r6 * r4) * third)), k]
 }
 
 /// ln x; not a number where x is negative.
@@ -71,6 +101,34 @@ pub fn exp(x: f64) -> f64 {
 /// ```
 #[inline(always)]
 pub fn ln(x: f64) -> f64 {
+    if is_normal(x) { logarithm(x) } else { logarithm_out_of_range(x) }
+}
+
+/// Whether a number is positive, and not so small that it has lost digits, or infinite.
+#[inline(always)]
+pub(crate) fn is_normal(x: f64) -> bool {
+    (f64::MIN_POSITIVE..=f64::MAX).contains(&x)
+}
+
+/// The logarithm of what is not [normal](is_normal).
+#[cold]
+#[inline(never)]
+pub(crate) fn logarithm_out_of_range(x: f64) -> f64 {
+    if x > 0.0 && x < f64::INFINITY {
+        let logarithm = logarithm(x * 18_014_398_509_481_984.0);
+        logarithm - 54.0 * LN_2[0] - 54.0 * LN_2[1]
+    } else if x == 0.0 {
+        f64::NEG_INFINITY
+    } else if x < 0.0 {
+        f64::NAN
+    } else {
+        x
+    }
+}
+
+/// The logarithm of a [normal](is_normal) number.
+#[inline(always)]
+pub(crate) fn logarithm(x: f64) -> f64 {
     const R: [f64; 8] = [
         0.666_666_666_666_666_6,
         0.400_000_000_000_062_64,
@@ -86,23 +144,21 @@ pub fn ln(x: f64) -> f64 {
     const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
     /// The bits of 2⁵², whose last bits are those of an integer that is added to it.
     const SHIFT: u64 = 0x4330_0000_0000_0000;
-    let is_subnormal = x < f64::MIN_POSITIVE;
-    let [normal, less] = if is_subnormal { [x * 18_014_398_509_481_984.0, 54.0] } else { [x, 0.0] };
     // x = 2ᵏ (1 + f), √½ ≤ 1 + f < √2
-    let bits = normal.to_bits().wrapping_add(ONE - SQRT_HALF);
-    let k = f64::from_bits((bits >> 52) | SHIFT) - (4_503_599_627_370_496.0 + 1023.0) - less;
+    let bits = x.to_bits().wrapping_add(ONE - SQRT_HALF);
+    let k = f64::from_bits((bits >> 52) | SHIFT) - (4_503_599_627_370_496.0 + 1023.0);
     let f = f64::from_bits((bits & MANTISSA) + SQRT_HALF) - 1.0;
     // ln (1 + f) = f - f²/2 + s (f²/2 + s² R(s²)), s = f/(2 + f)
     let s = f / (2.0 + f);
     let z = s * s;
     let z2 = z * z;
+    let s3 = s * z;
     let pair = |i: usize| R[i] + z * R[i + 1];
-    let r = z * (pair(0) + z2 * pair(2) + z2 * z2 * (pair(4) + z2 * pair(6)));
+    let [first, second] = [pair(0) + z2 * pair(2), pair(4) + z2 * pair(6)];
     let half = 0.5 * f * f;
-    let logarithm = k * LN_2[0] - ((half - (s * (half + r) + k * LN_2[1])) - f);
-    let of_positive = if x < f64::INFINITY { logarithm } else { x };
-    let of_zero = if x < 0.0 { f64::NAN } else { f64::NEG_INFINITY };
-    if x <= 0.0 { of_zero } else { of_positive }
+    // The larger parts, with what their sum has lost by rounding
+    let [sum, lost] = difference(k * LN_2[0], -f);
+    sum + (((lost + (k * LN_2[1] - half)) + s * half) + (s3 * first + (s3 * (z2 * z2)) * second))
 }
 
 /// Sine and cosine of an angle, rad.

@@ -195,7 +195,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 let trial = step::attempt(system, control.time, state, derivative, control.length);
                 let slopes = trial.kept_slopes();
                 let rest = |end: &[f64; N]| (system.derivative(trial_end, end), slopes);
-                if let Some(step) = self.judge(system, trial.outcome, trial_end, rest) {
+                if let Some(step) = self.judge(system, &trial.outcome, trial_end, rest) {
                     return Ok(step);
                 }
             }
@@ -217,12 +217,12 @@ impl<'a, const N: usize> Integrator<'a, N> {
     fn judge<F: StepBounds<N>>(
         &mut self,
         system: &F,
-        trial: step::Outcome<f64, N>,
+        trial: &step::Outcome<f64, N>,
         trial_end: f64,
         rest: impl FnOnce(&[f64; N]) -> ([f64; N], step::KeptSlopes<N>),
     ) -> Option<Step<N>> {
         let length = self.control.length;
-        if self.control.accepts(&self.state, &trial) {
+        if self.control.accepts(&self.state, trial) {
             let rest = rest(&trial.end);
             return Some(self.take(system, trial.end, trial_end, rest));
         }

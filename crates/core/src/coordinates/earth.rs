@@ -5,9 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Rotation3, Vector3};
-
-use super::{Rotation, about_pole, wrap_to_turn};
+use super::{Rotation, about_pole, rotation_about, wrap_to_turn};
 use crate::elementary::{asin, atan2, hypot, sin_cos};
 
 /// The years for which [`gcrf_to_planet_fixed`] and [`teme_to_planet_fixed`] are tested.
@@ -77,7 +75,7 @@ pub fn gcrf_to_planet_fixed(days: f64) -> Rotation {
     let t = days / CENTURY;
     let s = (0.003_81 - 0.072_57 * t * t) * t * ARCSECOND - x * y / 2.0;
     let (e, d) = (atan2(y, x), asin(hypot(x, y)));
-    let tilt = Rotation3::from_axis_angle(&Vector3::y_axis(), -d);
+    let tilt = rotation_about(1, -d);
     about_pole(earth_rotation_angle(days) - s - e) * tilt * about_pole(e)
 }
 

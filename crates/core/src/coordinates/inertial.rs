@@ -1,8 +1,8 @@
 //! The inertial frame, from which the planet turns away.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
-use super::{PlanetFixed, Rotation};
+use super::{PlanetFixed, Rotation, rotation_about};
 use crate::planet::Planet;
 
 /// Position and velocity in an inertial frame (ECI): in that of date the planet's pole is z, and x is where longitude 0 was at
@@ -48,7 +48,7 @@ impl Inertial {
 /// The rotation that takes inertial components to planet-fixed ones, where the planet is turned from its own pole's inertial frame by
 /// the angle.
 pub fn about_pole(angle: f64) -> Rotation {
-    Rotation3::from_axis_angle(&Vector3::z_axis(), -angle)
+    rotation_about(2, -angle)
 }
 
 /// ω, rad/s: along the pole.

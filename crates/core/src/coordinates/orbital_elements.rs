@@ -2,9 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
-use super::{Inertial, wrap_to_half_turns, wrap_to_turn};
+use super::{Inertial, rotation_about, wrap_to_half_turns, wrap_to_turn};
 use crate::elementary::{atan2, cbrt, hypot, sin, sin_cos};
 
 /// The size of an orbit.
@@ -74,9 +74,9 @@ impl OrbitalElements {
         let radius = p / (1.0 + self.eccentricity * cos_nu);
         let position = Vector3::new(cos_nu, sin_nu, 0.0) * radius;
         let velocity = Vector3::new(-sin_nu, self.eccentricity + cos_nu, 0.0) * (gravitational_parameter / p).sqrt();
-        let from_perifocal = Rotation3::from_axis_angle(&Vector3::z_axis(), self.raan)
-            * Rotation3::from_axis_angle(&Vector3::x_axis(), self.inclination)
-            * Rotation3::from_axis_angle(&Vector3::z_axis(), self.argument_of_periapsis);
+        let from_perifocal = rotation_about(2, self.raan)
+            * rotation_about(0, self.inclination)
+            * rotation_about(2, self.argument_of_periapsis);
         Inertial { position: from_perifocal * position, velocity: from_perifocal * velocity }
     }
 

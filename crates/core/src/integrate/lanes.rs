@@ -70,7 +70,7 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
         system: &F,
     ) -> Option<Step<N>> {
         let rest = |_: &[f64; N]| (step::of_lane(&self.end_derivative, lane), self.trial.kept_slopes_of(lane));
-        integrator.judge(system, self.trial.outcome_of(lane), self.end_time.0[lane], rest)
+        integrator.judge(system, &self.trial.outcome_of(lane), self.end_time.0[lane], rest)
     }
 
     #[inline(always)]

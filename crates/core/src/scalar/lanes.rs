@@ -23,6 +23,12 @@ impl<const L: usize> Lanes<L> {
         Self(lanes)
     }
 
+    /// Whether something holds of all; of the others it is asked as well.
+    #[inline(always)]
+    fn all(self, holds: impl Fn(f64) -> bool) -> bool {
+        self.0.iter().fold(true, |all, number| all & holds(*number))
+    }
+
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
         Self::each(|lane| function(self.0[lane]))
@@ -177,17 +183,21 @@ impl<const L: usize> Scalar for Lanes<L> {
 
     #[inline(always)]
     fn exp(self) -> Self {
-        self.map(elementary::exp)
+        if self.all(elementary::has_normal_exponential) {
+            self.map(elementary::normal_exponential)
+        } else {
+            self.map(elementary::exp)
+        }
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        self.map(elementary::ln)
+        if self.all(elementary::is_normal) { self.map(elementary::logarithm) } else { self.map(elementary::ln) }
     }
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let are_few = self.0.iter().fold(true, |all, angle| all & elementary::has_few_quadrants(*angle));
+        let are_few = self.all(elementary::has_few_quadrants);
         let [mut sines, mut cosines] = [[0.0; L]; 2];
         if are_few {
             for lane in 0..L {

@@ -3,6 +3,7 @@
 
 use super::stored_step::{Motion, StoredStep};
 use crate::coordinates::{GreatCircle, PlanetFixed, ground_rate, wrap_to_half_turns};
+use crate::elementary::atan2;
 
 /// The ground track, piece by piece. Its lengths are angles at the planet's centre, rad.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +86,7 @@ impl GroundTrack {
         if !rate.iter().all(|term| term.is_finite()) {
             // The dense output of a step may overflow where its ends do not: the straight way is what is known.
             rate = [0.0; POINTS];
-            rate[0] = first.position.angle(&last.position) / duration;
+            rate[0] = atan2(first.position.cross(&last.position).norm(), first.position.dot(&last.position)) / duration;
         }
         let length = rate[0] * duration;
         let rest = (rate[POINTS - 1].abs() + rate[POINTS - 2].abs()) * duration;

@@ -37,6 +37,8 @@ const RADII: [f64; 2] = [0.3, 0.6];
 const SMALLEST: f64 = 1e-8;
 /// Residuals with which a goal is nearly met.
 const NEAR: f64 = 3.0;
+/// Slopes by which a step brings at least this share of what they predict are good enough to be updated for the next one.
+const GOOD: f64 = 0.8;
 /// The steps at most.
 const MOST_STEPS: usize = 60;
 /// The part by which the residuals must fall, at least once in so many steps.
@@ -57,6 +59,7 @@ pub(super) fn descend<E>(
 ) -> Result<(Point, Rest), Halt<E>> {
     let mut radius = RADII[0];
     let mut slow = 0;
+    let mut updated: Option<DMatrix<f64>> = None;
     for _ in 0..MOST_STEPS {
         if point.worst() <= NEAR {
             return Ok((point, Rest::Near));
@@ -64,19 +67,34 @@ pub(super) fn descend<E>(
         if known.iter().any(|known| search.distance(known, &point.place) < SAME) {
             return Ok((point, Rest::Known));
         }
-        let slopes = slopes(search, &point, Accuracy::OfCase)?;
+        // What a good step has told of the slopes will do for the next one.
+        let mut is_exact = updated.is_none();
+        let mut of_point = match updated.take() {
+            Some(updated) => updated,
+            None => slopes(search, &point, Accuracy::OfCase)?.residuals,
+        };
         let before = point.merit();
         let mut at_edge = false;
         loop {
-            let step = step(search, &point, &slopes.residuals, radius);
+            let step = step(search, &point, &of_point, radius);
             let length = step.norm();
-            let expected = before - predicted(&point, &slopes.residuals, &step);
-            if length < SMALLEST || expected <= FLAT * FLAT * before {
+            let expected = before - predicted(&point, &of_point, &step);
+            let is_at_rest = length < SMALLEST || expected <= FLAT * FLAT * before;
+            if is_at_rest && is_exact {
                 return Ok((point, if at_edge { Rest::Edge } else { Rest::Stationary }));
             }
-            let place: Vec<_> = point.place.iter().zip(step.iter()).map(|(place, step)| place + step).collect();
-            let next = search.flown(&place, Accuracy::OfCase)?;
-            let share = (before - next.merit()) / expected;
+            let next = if is_at_rest {
+                None
+            } else {
+                let place: Vec<_> = point.place.iter().zip(step.iter()).map(|(place, step)| place + step).collect();
+                Some(search.flown(&place, Accuracy::OfCase)?)
+            };
+            let share = next.as_ref().map_or(0.0, |next| (before - next.merit()) / expected);
+            if !is_exact && share < GOOD {
+                (of_point, is_exact) = (slopes(search, &point, Accuracy::OfCase)?.residuals, true);
+                continue;
+            }
+            let Some(next) = next else { continue };
             let accepted = share > 1e-4;
             search.record(start, &next, radius, accepted);
             at_edge = !next.counts();
@@ -87,6 +105,7 @@ pub(super) fn descend<E>(
                 _ => radius,
             };
             if accepted {
+                updated = (share > GOOD).then(|| update(search, &of_point, &point, &next)).flatten();
                 point = next;
                 break;
             }
@@ -97,6 +116,20 @@ pub(super) fn descend<E>(
         }
     }
     Ok((point, Rest::Stationary))
+}
+
+/// The slopes after a step, of those before it: changed the least with which they have the difference of the residuals along the step.
+///
+/// # Reference
+/// C. G. Broyden, A class of methods for solving nonlinear simultaneous equations, Mathematics of Computation 19 (1965), 577-593.
+fn update<E>(search: &Search<E>, slopes: &DMatrix<f64>, from: &Point, to: &Point) -> Option<DMatrix<f64>> {
+    let way = DVector::from_vec(search.way(&from.place, &to.place));
+    let square = way.norm_squared();
+    let turn = |goal: usize| search.goals[goal].searched.turn.map(|turn| turn / search.goals[goal].searched.tolerance);
+    let pairs = to.residuals.as_ref()?.iter().zip(from.residuals.as_ref()?).enumerate();
+    let differences: Vec<_> = pairs.map(|(goal, (after, before))| on_circle(after - before, turn(goal))).collect();
+    let error = DVector::from_vec(differences) - slopes * &way;
+    (square > 0.0).then(|| slopes + error * way.transpose() / square)
 }
 
 /// The slopes at a point, by central differences, or to one side where flights on the other do not count.
