@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, SVector};
 use reentry::atmosphere::us76;
-use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System, are_used};
+use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System, lane_instructions};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
 use reentry::simulate::{arrival, arrivals, simulate_with_bodies};
@@ -435,7 +435,7 @@ fn number_types() {
     println!("| --- | --- | --- |");
     let line = |what: &str, time: f64, plain: f64| println!("| {what} | {time:.1} µs | {:.2} |", time / plain);
     line("an arrival, one of 256 dispersed ones", alone / 256.0, alone / 256.0);
-    line(&format!("in lanes ({})", are_used().unwrap_or("none")), in_lanes / 256.0, alone / 256.0);
+    line(&format!("in lanes ({})", lane_instructions().unwrap_or("none")), in_lanes / 256.0, alone / 256.0);
     line("a flight with its peaks", plain, plain);
     line("its sensitivities, 5 by 12", derivatives, plain);
     line("its verification", verification, plain);

@@ -14,7 +14,7 @@ mod step;
 mod step_control;
 mod tableau;
 
-pub use lanes::{LaneSteps, are_used, use_no_lanes};
+pub use lanes::{LaneSteps, lane_instructions};
 pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 

@@ -16,7 +16,7 @@
 //! The usual factors have corners as functions of the entries; this one has none, so that the entries may themselves be
 //! functions of another argument: the interpolation by two arguments then has continuous slopes along both.
 //!
-//! # Stretches
+//! # Segments
 //!
 //! A table has three: 0 below its first entry, 1 inside, 2 above its last. The caller says which, since a step of the integration ends
 //! where another begins; trial stages that look over such an end find the formula of their own segment continued. That of

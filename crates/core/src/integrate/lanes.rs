@@ -1,7 +1,5 @@
 //! Trial steps of several integrators at once, in the vector registers of the processor.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::{IntegrationError, Integrator, Step, StepBounds, System, step};
 use crate::scalar::Lanes;
 
@@ -80,18 +78,9 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
     }
 }
 
-static UNUSED: AtomicBool = AtomicBool::new(false);
-
-/// From now on flights are flown one by one.
-pub fn use_no_lanes() {
-    UNUSED.store(true, Ordering::Relaxed);
-}
-
-/// The instructions by which lanes are computed; none where flights are flown one by one: as was asked for, or since the processor has no vectors of
-/// four numbers.
-pub fn are_used() -> Option<&'static str> {
-    let unused = UNUSED.load(Ordering::Relaxed);
-    isa::widest().filter(|_| !unused)
+/// The instructions by which lanes are computed; none where the processor has no vectors of four numbers, and flights are faster one by one.
+pub fn lane_instructions() -> Option<&'static str> {
+    isa::widest()
 }
 
 /// The instruction sets among which the processor decides when the program runs.

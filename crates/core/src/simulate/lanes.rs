@@ -2,7 +2,7 @@
 
 use super::flight::Flight;
 use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, extremes};
-use crate::integrate::{AnyStep, LaneSteps, Step, System, are_used};
+use crate::integrate::{AnyStep, LaneSteps, Step, System, lane_instructions};
 use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Forces, Formulation};
 use crate::scalar::Lanes;
@@ -71,10 +71,10 @@ impl<'a, T> Outcomes<'a, T> {
         let of_layout: Vec<usize> =
             (0..self.scenarios.len()).filter(|index| of_layout(&self.scenarios[*index])).collect();
         // Two would not be faster together.
-        if of_layout.len() <= 2 || are_used().is_none() {
+        if of_layout.len() <= 2 || lane_instructions().is_none() {
             return;
         }
-        let mut fleet = Fleet {
+        let mut scheduler = Scheduler {
             outcomes: self,
             coming: of_layout.into_iter(),
             interrupt,
@@ -82,7 +82,7 @@ impl<'a, T> Outcomes<'a, T> {
             under_way: Vec::new(),
             groups: Vec::new(),
         };
-        fleet.fly();
+        scheduler.fly();
     }
 
     fn map<U>(self, to: impl Fn(&Scenario, T) -> U) -> Outcomes<'a, U> {
@@ -100,14 +100,15 @@ impl<'a, T> Outcomes<'a, T> {
     }
 }
 
-/// Flights that are under way, and scenarios that are to come.
-struct Fleet<'a, 'b, T, M, O, const N: usize> {
+/// Which flights fly in which lanes: those that are under way, and scenarios that are to come.
+struct Scheduler<'a, 'b, T, M, O, const N: usize> {
     outcomes: &'b mut Outcomes<'a, T>,
     coming: std::vec::IntoIter<usize>,
     interrupt: &'a dyn Interrupt,
     observer: M,
     /// By their places; those that have ended leave room for others.
     under_way: Vec<Option<Flying<'a, O, N>>>,
+    /// The places of flights that wait for lanes; the forces of a group are alike.
     groups: Vec<Vec<usize>>,
 }
 
@@ -119,7 +120,7 @@ struct Flying<'a, O, const N: usize> {
     observer: O,
 }
 
-impl<T, M, O, const N: usize> Fleet<'_, '_, T, M, O, N>
+impl<T, M, O, const N: usize> Scheduler<'_, '_, T, M, O, N>
 where
     M: Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
     O: Observer<Cartesian, N, Outcome = T>,
@@ -155,7 +156,7 @@ where
                         self.under_way.len() - 1
                     });
                     self.under_way[free] = Some(flying);
-                    self.go_on(free);
+                    self.wait(free);
                     count += 1;
                 }
                 Ok((Some(arrival), flying)) => self.end(flying, arrival),
@@ -169,8 +170,8 @@ where
         self.outcomes.known[index] = Some(observer.finish(flight, arrival));
     }
 
-    /// Ends the flight at a place, or lets it go on.
-    fn after(&mut self, place: usize, passed: Result<Option<Arrival>, SimulationError>) -> bool {
+    /// Whether the flight at a place goes on after a step; what is wanted of one that has ended, or failed, is kept.
+    fn goes_on(&mut self, place: usize, passed: Result<Option<Arrival>, SimulationError>) -> bool {
         match passed {
             Ok(None) => return true,
             Ok(Some(arrival)) => {
@@ -187,38 +188,33 @@ where
         false
     }
 
-    /// Lets a flight go on among its like; while it is stiff, alone.
-    fn go_on(&mut self, place: usize) {
+    /// Lets a flight wait among its like; while it is stiff, it is flown alone.
+    fn wait(&mut self, place: usize) {
         while let Some(Flying { flight, observer, .. }) = &mut self.under_way[place] {
             if !flight.integrator.is_stiff() {
-                let group = self.group_of(place).unwrap_or_else(|| {
-                    self.groups.push(Vec::new());
-                    self.groups.len() - 1
-                });
-                self.groups[group].push(place);
-                return;
+                break;
             }
             let passed = flight.advance().and_then(|step| flight.pass(&step, &mut |view| observer.observe(view)));
-            self.after(place, passed);
+            self.goes_on(place, passed);
+        }
+        let Some(Flying { flight, .. }) = &self.under_way[place] else { return };
+        match self.group_like(flight.motion.forces()) {
+            Some(group) => self.groups[group].push(place),
+            None => self.groups.push(vec![place]),
         }
     }
 
-    /// The group of the flights that are like the one at a place.
-    fn group_of(&self, place: usize) -> Option<usize> {
-        let forces = |place: usize| self.under_way[place].as_ref().map(|flying| flying.flight.motion.forces());
-        let own = forces(place)?;
-        let alike =
-            |group: &Vec<usize>| group.first().and_then(|first| forces(*first)).is_some_and(|of| of.are_alike(own));
-        self.groups.iter().position(alike)
+    /// The group of the flights whose forces are like these.
+    fn group_like(&self, forces: &Forces) -> Option<usize> {
+        let first = |group: &Vec<usize>| group.first().and_then(|place| self.under_way[*place].as_ref());
+        let is_alike = |first: &Flying<O, N>| first.flight.motion.forces().are_alike(forces);
+        self.groups.iter().position(|group| first(group).is_some_and(is_alike))
     }
 
     /// Those that wait to fly with others of such forces, flights that begin so included.
-    fn more_like(&mut self, like: &Forces) -> Vec<usize> {
+    fn more_like(&mut self, forces: &Forces) -> Vec<usize> {
         self.start_more();
-        let forces = |place: usize| self.under_way[place].as_ref().map(|flying| flying.flight.motion.forces());
-        let alike =
-            |group: &Vec<usize>| group.first().and_then(|first| forces(*first)).is_some_and(|of| of.are_alike(like));
-        self.groups.iter().position(alike).map(|group| self.groups.swap_remove(group)).unwrap_or_default()
+        self.group_like(forces).map(|group| self.groups.swap_remove(group)).unwrap_or_default()
     }
 
     /// Flies those of a group, and others that come to it, until no more are left.
@@ -245,7 +241,7 @@ where
                     let end = flight.horizon();
                     if let Err(error) = steps.load(lane, &mut flight.integrator, &flight.motion, end) {
                         let error = flight.failure(error);
-                        self.after(at, Err(error));
+                        self.goes_on(at, Err(error));
                         *place = None;
                     }
                 }
@@ -262,14 +258,14 @@ where
                 let Some(Flying { flight, observer, .. }) = &mut self.under_way[at] else { continue };
                 let Some(step) = steps.judge(lane, &mut flight.integrator, &flight.motion) else { continue };
                 let passed = flight.pass(&step, &mut |view| observer.observe(view));
-                let goes_on = self.after(at, passed);
+                let goes_on = self.goes_on(at, passed);
                 let Some(Flying { flight, .. }) = self.under_way[at].as_ref().filter(|_| goes_on) else {
                     *place = None;
                     continue;
                 };
                 if flight.integrator.is_stiff() || !flight.motion.forces().are_alike(&like) {
                     *place = None;
-                    self.go_on(at);
+                    self.wait(at);
                 } else {
                     system.0.put(lane, flight.motion.forces());
                 }
