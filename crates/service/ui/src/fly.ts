@@ -142,6 +142,8 @@ async function flyOn(): Promise<void> {
     const began = performance.now();
     try {
       const show = await flown(alone(tidied(draft.peek())), isMoving);
+      // The case came to rest meanwhile.
+      if (isCoarse && !isMoving) isWanted = true;
       // The next is asked for while this one is drawn.
       setTimeout(show);
       failing = 0;

@@ -133,6 +133,20 @@ it('a slider asks for fewer rows than the flight has at rest, and for no column 
   await page.close();
 });
 
+it('a case that comes to rest while its flight is under way is flown with all its rows after it', async () => {
+  const page = await on('lifting_capsule');
+  const asked: number[] = [];
+  page.on('request', (request) => {
+    if (request.url().endsWith('/simulate')) asked.push(request.postDataJSON().output.samples_per_step);
+  });
+  // The answer to the second request, the first of a case that moves, comes long after the rest began.
+  network.delay = 1500;
+  await dragged(page, () => asked.length >= 2);
+  await expect.poll(() => asked.length, { timeout: 15_000 }).toBe(3);
+  expect(asked[2]).toBeGreaterThan(asked[1] as number);
+  await page.close();
+});
+
 it('a quantity whose plot is added is asked for, and is in flights that were pinned before', async () => {
   const page = await on('lifting_capsule');
   await page.getByRole('button', { name: 'Pin this flight' }).click();
