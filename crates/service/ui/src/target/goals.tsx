@@ -5,6 +5,7 @@ import { NumberInput, type Reading } from '../form/inputs';
 import { angles, put } from '../form/line';
 import { type Name, QUANTITIES, scaleOf, unitOf } from '../quantities';
 import { angleUnit, caseUnit, current, draft } from '../store';
+import { bodiesOf, namesOf } from './bodies';
 import { isAiming } from './place';
 import { missesOf } from './request';
 import { found } from './solve';
@@ -23,12 +24,35 @@ export function Goals() {
           ) : (
             <Ends goal={goal} />
           )}
+          <Whose index={index} goal={goal} />
           <button type="button" class="small" aria-label={`Remove goal ${index + 1}`} onClick={() => removed(index)}>
             ×
           </button>
         </li>
       ))}
     </ul>
+  );
+}
+
+/** Of whose flight a goal is, where bodies leave the vehicle. */
+function Whose({ index, goal }: { index: number; goal: Goal }) {
+  const bodies = bodiesOf(draft.value.events);
+  const { body } = goal as { body?: string };
+  if (bodies.length === 0 && body === undefined) return null;
+  const names = bodies.map(({ name }) => name);
+  return (
+    <select
+      aria-label={`Body of goal ${index + 1}`}
+      value={body ?? ''}
+      onChange={(event) => put(['achieve', index, 'body'], event.currentTarget.value || undefined)}
+    >
+      <option value="">of the vehicle</option>
+      {(body === undefined || names.includes(body) ? names : [...names, body]).map((name) => (
+        <option key={name} value={name}>
+          of {name}
+        </option>
+      ))}
+    </select>
   );
 }
 
@@ -117,7 +141,9 @@ function QuantityGoal({ index, goal }: { index: number; goal: Goal }) {
   const reading = readingOf(name);
   const unit = unitOf(name, angleUnit.value);
   const label = QUANTITIES[name]?.label ?? name;
-  const events = (draft.value.events ?? []).flatMap((event) => (typeof event?.name === 'string' && event.name !== '' ? [event.name] : []));
+  const { at = 'end', body } = goal as { at?: unknown; body?: string };
+  const ofBody = bodiesOf(draft.value.events).find(({ name }) => name === body);
+  const events = namesOf(body === undefined ? draft.value.events : ofBody?.events);
   const moments: [string, unknown][] = [
     ['at the end', 'end'],
     ['at the start', 'start'],
@@ -128,7 +154,6 @@ function QuantityGoal({ index, goal }: { index: number; goal: Goal }) {
       [`after ${event}`, { event, side: 'after' }],
     ]),
   ];
-  const { at = 'end' } = goal as { at?: unknown };
   const ends = relation === 'between' ? [0, 1].map((end) => ['between', end]) : [[relation]];
   return (
     <>

@@ -109,9 +109,10 @@ function sizeOf(goal: Goal, own: AngleUnit): number {
 
 const MOMENTS: Record<string, string> = { start: 'at the start', end: 'at the end' };
 
-/** A goal on a quantity, without its value: `peak load factor`, `speed at the end`. */
-export function goalInWords({ quantity = '', at = 'end' }: { quantity?: string; at?: unknown }): string {
-  const label = (QUANTITIES[quantity as Name]?.label ?? quantity).toLowerCase();
+/** A goal on a quantity, without its value: `peak load factor`, `speed of first stage at the end`. */
+export function goalInWords({ quantity = '', at = 'end', body }: { quantity?: string; at?: unknown; body?: string }): string {
+  const ofVehicle = (QUANTITIES[quantity as Name]?.label ?? quantity).toLowerCase();
+  const label = body === undefined ? ofVehicle : `${ofVehicle} of ${body}`;
   if (at === 'peak') return `peak ${label}`;
   if (at === 'lowest') return `lowest ${label}`;
   if (typeof at === 'string') return `${label} ${Object.hasOwn(MOMENTS, at) ? MOMENTS[at] : at}`;
@@ -131,6 +132,7 @@ export function limitInWords(asked: Case, limit: Limit, reader: AngleUnit): stri
     at_least,
     at_most,
     between,
+    body,
     with: others = {},
   } = limit as Record<string, unknown>;
   const flown = Object.entries(others ?? {}).map(([pointer, value]) => {
@@ -145,12 +147,14 @@ export function limitInWords(asked: Case, limit: Limit, reader: AngleUnit): stri
   const unit = QUANTITIES[quantity as Name] ? unitOf(quantity as Name, reader) : '';
   const [least, greatest] = (Array.isArray(between) ? between : [at_least, at_most]) as unknown[];
   const range = [least === undefined ? [] : [`at least ${value(least)}`], greatest === undefined ? [] : [`at most ${value(greatest)}`]];
+  const whose = typeof body === 'string' ? { body } : {};
+  const subject = typeof body === 'string' ? `${body} ` : '';
   const what =
     termination !== undefined
-      ? `ends with ${[termination].flat().join(' or ').replaceAll('_', ' ')}`
+      ? `${subject}ends with ${[termination].flat().join(' or ').replaceAll('_', ' ')}`
       : site !== undefined
-        ? `lands within ${distance(Number(within))} of the place`
-        : `${goalInWords({ quantity: String(quantity), ...(moment === undefined ? {} : { at: moment }) })} ${range.flat().join(' and ')} ${unit}`.trim();
+        ? `${subject}lands within ${distance(Number(within))} of the place`
+        : `${goalInWords({ quantity: String(quantity), ...whose, ...(moment === undefined ? {} : { at: moment }) })} ${range.flat().join(' and ')} ${unit}`.trim();
   return flown.length > 0 ? `${what}, with ${flown.join(', ')}` : what;
 }
 

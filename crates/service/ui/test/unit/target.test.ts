@@ -5,6 +5,7 @@ import { whyNoCase } from '../../src/form/shape';
 import { fromFragment, toFragment } from '../../src/link';
 import { numberAt } from '../../src/numbers';
 import { numbersWithSlider, rangeOf, roleOf, withRole } from '../../src/roles';
+import { bodiesOf, namesOf } from '../../src/target/bodies';
 import { corridorRequest, taken, targetRequest } from '../../src/target/request';
 import { limitInWords, outcomeInWords } from '../../src/target/why';
 
@@ -134,6 +135,20 @@ it('a limit in words', () => {
   expect(words({ quantity: 'altitude', between: [1000, 2500] })).toBe('altitude at the end at least 1 and at most 2.5 km');
   expect(words({ termination: ['surface_impact', 'stop_altitude'] })).toBe('ends with surface impact or stop altitude');
   expect(words({ site: 'mahia', within: 5000 })).toBe('lands within 5 km of the place');
+  expect(words({ site: 'mahia', within: 5000, body: 'stage' })).toBe('stage lands within 5 km of the place');
+  expect(words({ termination: ['surface_impact'], body: 'stage' })).toBe('stage ends with surface impact');
+  expect(words({ quantity: 'load_factor', at: 'peak', at_most: 10, body: 'stage' })).toBe('peak load factor of stage at most 10 g');
+});
+
+it('bodies of a case, with those that leave them, and their events', () => {
+  const events = [
+    { name: 'ignition' },
+    { then: { separate: [{ name: 'stage', events: [{ name: 'apart', then: { separate: [{ name: 'adapter' }] } }] }, { name: '' }] } },
+  ];
+  const bodies = bodiesOf(events as never);
+  expect(bodies.map(({ name }) => name)).toEqual(['stage', 'adapter']);
+  expect(bodies.map((body) => namesOf(body.events))).toEqual([['apart'], []]);
+  expect(bodiesOf([null, { then: { separate: [null] } }] as never)).toEqual([]);
 });
 
 it('what is asked of a case is in its link', async () => {

@@ -1,0 +1,23 @@
+import type { Case } from '../api';
+
+type Events = Case['events'];
+
+/** A body that an event of a case separates, with its own events. */
+interface Body {
+  name: string;
+  events: Events;
+}
+
+/** All bodies that events separate, and that leave those; of a case that may be half typed. */
+export function bodiesOf(events: Events): Body[] {
+  return (events ?? []).flatMap((event) =>
+    (event?.then?.separate ?? []).flatMap((body) =>
+      typeof body?.name === 'string' && body.name !== '' ? [{ name: body.name, events: body.events }, ...bodiesOf(body.events)] : [],
+    ),
+  );
+}
+
+/** The names of events that have one. */
+export function namesOf(events: Events): string[] {
+  return (events ?? []).flatMap((event) => (typeof event?.name === 'string' && event.name !== '' ? [event.name] : []));
+}
