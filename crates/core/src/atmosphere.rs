@@ -12,7 +12,7 @@ pub use table::{Gas, MOLAR_GAS_CONSTANT, Table};
 use std::sync::Arc;
 
 use crate::interpolation::Hint;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, apart};
 
 /// Scale heights over which the density falls to e⁻³⁷ ≈ 10⁻¹⁶, so thin that an integrator may not notice it coming.
 const SENSIBLE_SCALE_HEIGHTS: f64 = 37.0;
@@ -97,7 +97,7 @@ impl Atmosphere {
         match *self {
             Self::Exponential { surface_density, scale_height } => falling(surface_density, altitude, scale_height),
             // So that flights by the exponential one do not carry the instructions of the others.
-            _ => S::apart(|| self.density_of_segment(segment, altitude, hint)),
+            _ => apart(|| self.density_of_segment(segment, altitude, hint)),
         }
     }
 
@@ -117,7 +117,7 @@ impl Atmosphere {
     /// it is 1 m/s.
     #[inline(always)]
     pub fn density_and_sound<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> (S, S) {
-        S::apart(|| self.density_and_sound_of_segment(segment, altitude, hint))
+        apart(|| self.density_and_sound_of_segment(segment, altitude, hint))
     }
 
     #[inline(always)]
@@ -135,6 +135,24 @@ impl Atmosphere {
             Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => {
                 (self.density(segment, altitude, hint), S::one())
             }
+        }
+    }
+
+    /// Density, kg/m³, and pressure, Pa, if the model has one, at an altitude, m, by the formulas of a segment. Out of line, in lanes as well: few
+    /// flights take it.
+    #[inline(never)]
+    pub(crate) fn density_and_pressure<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> (S, Option<S>) {
+        match self {
+            Self::Us76 => {
+                let (density, pressure) = us76::density_and_pressure_in(segment, altitude);
+                (density, Some(pressure))
+            }
+            Self::Nrlmsise00(model) => {
+                let AtmosphereSample { density, pressure, .. } = model.above_origin(altitude);
+                (density, pressure)
+            }
+            Self::Table(table) => (table.density(segment, altitude, hint), table.pressure(segment, altitude, hint)),
+            Self::Vacuum | Self::Layers(_) | Self::Exponential { .. } => (self.density(segment, altitude, hint), None),
         }
     }
 

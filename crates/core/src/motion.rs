@@ -26,7 +26,7 @@ pub(crate) use thrust::{along, direction, tilted};
 use nalgebra::Vector3;
 use num_dual::Dual64;
 
-use crate::atmosphere::Atmosphere;
+use crate::atmosphere::{Atmosphere, AtmosphereSample};
 use crate::control::{Against, Command, Control};
 use crate::coordinates::PlanetFixed;
 use crate::heating::{HeatFlux, Stagnation};
@@ -34,11 +34,11 @@ use crate::integrate::StepBounds;
 use crate::interpolation::Hint;
 use crate::parachute::Canopies;
 use crate::planet::{Gravity, Planet};
-use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
+use crate::scalar::{Over, Scalar, apart, length, reciprocal_or_one};
 use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
-use directions::{Directions, lift_fade_over_cosine, wind_fade};
+use directions::{Directions, lift_fade_over_cosine, relative_to_air};
 use thrust::Push;
 
 /// Within this angle of the vertical the lift fades out, rad: in vertical flight the bank angle has no meaning.
@@ -181,27 +181,37 @@ pub enum Singularity {
 
 /// The air as it meets the vehicle.
 struct Flow<S: nalgebra::Scalar> {
-    /// Along the radius vector, m.
-    altitude: S,
     /// Of the position, and of the velocity relative to the air.
     directions: Directions<S>,
-    /// Relative to the planet, m/s.
-    ground_speed: S,
-    /// The density over that of the parameters, kg/m³, and the Mach number, where something depends on it.
-    density_and_mach: Option<(S, S)>,
-    /// Relative to the planet, J/kg, where something depends on it.
-    energy: Option<S>,
+    /// By what tables and schedules are looked up.
+    arguments: Arguments<S>,
     /// The mass at the start of the phase over the mass, where a thrust acts and the mass is integrated.
     mass_ratio: Option<S>,
     /// Where the axis of the vehicle points, where the air asks for it.
     axis: Option<Vector3<S>>,
 }
 
-/// What depends on more of a place than its altitude, where something asks for it.
+/// By what tables and schedules are looked up, beside the time.
+struct Arguments<S> {
+    /// Along the radius vector, m.
+    altitude: S,
+    /// Relative to the planet, m/s.
+    ground_speed: S,
+    /// Over that of the parameters, kg/m³, where it comes with something else of the air.
+    density: Option<S>,
+    /// Where something depends on it.
+    mach: Option<S>,
+    /// Pa, where engines depend on it.
+    pressure: Option<S>,
+    /// Relative to the planet, J/kg, where something depends on it.
+    energy: Option<S>,
+}
+
+/// What is known of a place beside its altitude, where something asks for it.
 #[derive(Clone, Copy)]
 struct Local<S> {
-    /// Density, kg/m³, and speed of sound, m/s, of an atmosphere that depends on more than the altitude.
-    air: Option<(S, S)>,
+    /// Over that of the parameters; of an atmosphere that depends on more than the altitude, and where engines depend on the pressure.
+    air: Option<AtmosphereSample<S>>,
     /// Of gravity and of the centrifugal force, J/kg, where something depends on the energy.
     potential: Option<S>,
 }
@@ -295,7 +305,7 @@ impl<P: Scalar> Forces<P> {
             self.acceleration_by::<true, S>(time, state)
         } else {
             // The models that the thesis does not have would be in the way of those that it has.
-            S::apart(|| self.acceleration_by::<false, S>(time, state))
+            apart(|| self.acceleration_by::<false, S>(time, state))
         }
     }
 
@@ -351,7 +361,9 @@ impl<P: Scalar> Forces<P> {
     /// The acceleration, the rate of the mass, kg/s, and the heat flux into the stagnation point, W/m², of the air that meets the vehicle.
     #[inline(always)]
     fn acceleration_and_rates<S: Over<P>>(&self, time: S, state: &State<S>) -> (Vector3<S>, S, S) {
-        let flow = self.flow::<false, _>(time, state);
+        let mut flow = self.flow::<false, _>(time, state);
+        // Both the forces and the heat flux take it.
+        flow.arguments.density = Some(self.density_of_model(&flow.arguments));
         let aerodynamic = self.aerodynamic::<false, _>(time, &flow);
         let push = self.push(time, state, &flow, &aerodynamic);
         let throttle = push.as_ref().map_or_else(S::zero, |push| push.throttle);
@@ -382,7 +394,7 @@ impl<P: Scalar> Forces<P> {
         if self.models.heating.is_none() {
             return S::zero();
         }
-        let heat_flux = self.heat_flux(self.density::<false, _>(flow), flow.directions.speed);
+        let heat_flux = self.heat_flux(self.density(flow), flow.directions.speed);
         heat_flux.map_or(S::zero(), |flux| flux.total())
     }
 
@@ -411,82 +423,43 @@ impl<P: Scalar> Forces<P> {
             // In the plane of the axis and the velocity, whose angle of attack has the sine of the length of what the axis has across.
             let across = axis - ahead * axis.dot(ahead);
             let lift = across * (air.lift * reciprocal_or_one(length(&across)));
-            return (lift - ahead * air.drag) * self.density::<false, _>(flow);
+            return (lift - ahead * air.drag) * self.density(flow);
         }
         let lift = air.lift * lift_fade_over_cosine(*cos_gamma);
-        let (sin_bank, cos_bank) = self.sin_cos_bank::<THESIS, _>(time, flow);
+        let (sin_bank, cos_bank) = self.sin_cos_bank::<THESIS, _>(time, &flow.arguments);
         let (lift_left, lift_up) = (lift * sin_bank, lift * cos_bank);
         let against = air.drag + lift_up * up.dot(ahead);
         // The density, an exponential, is what all else would wait for.
-        let density = self.density::<THESIS, _>(flow);
+        let density = self.density(flow);
         Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density)
     }
 
     /// The air that meets a vehicle in a state.
     #[inline(always)]
     fn flow<const THESIS: bool, S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
-        let local = self.local::<THESIS, _>(time, || state.position);
-        self.flow_in::<THESIS, _>(time, local, state)
+        let altitude = self.models.planet.shape.altitude(&state.position);
+        let local = self.local::<THESIS, _>(time, altitude, || state.position);
+        self.flow_in::<THESIS, _>(time, altitude, local, state)
     }
 
-    /// The air that meets a vehicle in a state, with what depends on more of its place than the altitude.
+    /// The air that meets a vehicle in a state at an altitude, m, with what else is known of its place.
     #[inline(always)]
-    fn flow_in<const THESIS: bool, S: Over<P>>(&self, time: S, local: Local<S>, state: &State<S>) -> Flow<S> {
-        let mut flow = self.flow_without_axis::<THESIS, _>(local, state);
-        if !THESIS && self.by_axis {
-            flow.axis = Some(self.axis(time, state, &flow));
-        }
-        flow
+    fn flow_in<const THESIS: bool, S: Over<P>>(
+        &self,
+        time: S,
+        altitude: S,
+        local: Local<S>,
+        state: &State<S>,
+    ) -> Flow<S> {
+        let (directions, ground_speed) = self.motion_in_air::<THESIS, _>(altitude, state);
+        let arguments = self.arguments::<THESIS, _>(altitude, local, ground_speed, directions.speed);
+        // Made at once, with its axis: it is long, and would be copied.
+        let axis = (!THESIS && self.by_axis).then(|| self.axis(time, state, &arguments));
+        let mass_ratio = if THESIS { None } else { self.mass_ratio(state.mass) };
+        Flow { directions, arguments, mass_ratio, axis }
     }
 
-    #[inline(always)]
-    fn flow_without_axis<const THESIS: bool, S: Over<P>>(&self, local: Local<S>, state: &State<S>) -> Flow<S> {
-        let State { position, velocity, .. } = state;
-        let altitude = self.models.planet.shape.altitude(position);
-        match self.wind::<THESIS, _>(altitude) {
-            None => {
-                let directions = Directions::of(position, velocity);
-                let ground_speed = directions.speed;
-                self.flow_of::<THESIS, _>(altitude, local, directions, ground_speed, state.mass)
-            }
-            Some([east, north]) => {
-                let [x, y, z] = [position.x, position.y, position.z];
-                // ẑ × r, of the length of the distance from the axis.
-                let equatorial = (x * x + y * y).sqrt();
-                let over_equatorial = reciprocal_or_one(equatorial);
-                let over_radius = reciprocal_or_one(length(position));
-                let fade = wind_fade(equatorial * over_radius);
-                let [east, north] = [east * fade, north * fade];
-                let east = Vector3::new(-y, x, S::zero()) * (over_equatorial * east);
-                let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
-                let north = to_north * (over_equatorial * over_radius * north);
-                let directions = Directions::of(position, &(velocity - east - north));
-                self.flow_of::<THESIS, _>(altitude, local, directions, length(velocity), state.mass)
-            }
-        }
-    }
-
-    /// What depends on more of a planet-fixed position, m, than its altitude, at a time, s.
-    #[inline(always)]
-    fn local<const THESIS: bool, S: Over<P>>(&self, time: S, position: impl Fn() -> Vector3<S>) -> Local<S> {
-        let air = match &self.models.atmosphere {
-            Atmosphere::Nrlmsise00(model) if !THESIS => {
-                let air = model.sample(self.models.planet.shape.semi_axes(), time, &position());
-                Some((air.density, air.speed_of_sound.unwrap_or_else(S::one)))
-            }
-            _ => None,
-        };
-        Local { air, potential: if THESIS { None } else { self.potential_where_asked(position) } }
-    }
-
-    /// The potential of gravity and of the centrifugal force at a planet-fixed position, m, in J/kg, where something depends on the energy.
-    #[inline(always)]
-    fn potential_where_asked<S: Over<P>>(&self, position: impl FnOnce() -> Vector3<S>) -> Option<S> {
-        self.by_energy.then(|| self.models.planet.potential_at_rest(&position()))
-    }
-
-    /// The air at an altitude, m, with what depends on more of the place than that, which meets a vehicle of a mass, kg, in the directions of its
-    /// velocity relative to the air, at a speed relative to the planet, m/s.
+    /// The same by the altitude, m, the directions and the speed relative to the planet, m/s, of a vehicle of a mass, kg, whose axis does not matter.
     #[inline(always)]
     fn flow_of<const THESIS: bool, S: Over<P>>(
         &self,
@@ -496,16 +469,89 @@ impl<P: Scalar> Forces<P> {
         ground_speed: S,
         mass: Option<S>,
     ) -> Flow<S> {
-        let known = local.air.filter(|_| !THESIS).or_else(|| {
-            (!THESIS && self.by_mach).then(|| {
-                let segment = self.mode.of(Switch::Atmosphere);
-                self.models.atmosphere.density_and_sound(segment, altitude, &self.cache.atmosphere)
-            })
-        });
-        let density_and_mach = known.map(|(density, sound)| (density, directions.speed * sound.recip()));
+        let arguments = self.arguments::<THESIS, _>(altitude, local, ground_speed, directions.speed);
         let mass_ratio = if THESIS { None } else { self.mass_ratio(mass) };
-        let energy = local.potential.map(|potential| ground_speed * ground_speed * 0.5 + potential);
-        Flow { altitude, directions, ground_speed, density_and_mach, energy, mass_ratio, axis: None }
+        Flow { directions, arguments, mass_ratio, axis: None }
+    }
+
+    /// The directions of position and velocity relative to the air at an altitude, m, and the speed relative to the planet, m/s.
+    #[inline(always)]
+    fn motion_in_air<const THESIS: bool, S: Over<P>>(&self, altitude: S, state: &State<S>) -> (Directions<S>, S) {
+        let State { position, velocity, .. } = state;
+        let (air_velocity, ground_speed) = match self.wind::<THESIS, _>(altitude) {
+            None => (*velocity, None),
+            Some(wind) => (relative_to_air(velocity, wind, position), Some(length(velocity))),
+        };
+        let directions = Directions::of(position, &air_velocity);
+        let ground_speed = ground_speed.unwrap_or(directions.speed);
+        (directions, ground_speed)
+    }
+
+    /// What is known of a planet-fixed position, m, beside its altitude, m, at a time, s.
+    #[inline(always)]
+    fn local<const THESIS: bool, S: Over<P>>(
+        &self,
+        time: S,
+        altitude: S,
+        position: impl Fn() -> Vector3<S>,
+    ) -> Local<S> {
+        if THESIS {
+            return Local { air: None, potential: None };
+        }
+        let air = match &self.models.atmosphere {
+            Atmosphere::Nrlmsise00(model) => {
+                Some(model.sample(self.models.planet.shape.semi_axes(), time, &position()))
+            }
+            by_altitude if self.takes_pressure() => {
+                let segment = self.mode.of(Switch::Atmosphere);
+                let (density, pressure) = by_altitude.density_and_pressure(segment, altitude, &self.cache.atmosphere);
+                Some(AtmosphereSample { density, temperature: None, pressure, speed_of_sound: None })
+            }
+            _ => None,
+        };
+        Local { air, potential: self.potential_where_asked(position) }
+    }
+
+    /// The potential of gravity and of the centrifugal force at a planet-fixed position, m, in J/kg, where something depends on the energy.
+    #[inline(always)]
+    fn potential_where_asked<S: Over<P>>(&self, position: impl FnOnce() -> Vector3<S>) -> Option<S> {
+        self.by_energy.then(|| self.models.planet.potential_at_rest(&position()))
+    }
+
+    /// By what tables and schedules are looked up at an altitude, m, with what else is known of the place, at a speed relative to the planet and
+    /// another relative to the air, m/s.
+    #[inline(always)]
+    fn arguments<const THESIS: bool, S: Over<P>>(
+        &self,
+        altitude: S,
+        Local { air, potential }: Local<S>,
+        ground_speed: S,
+        air_speed: S,
+    ) -> Arguments<S> {
+        let energy = potential.map(|potential| ground_speed * ground_speed * 0.5 + potential);
+        let mut arguments = Arguments { altitude, ground_speed, density: None, mach: None, pressure: None, energy };
+        if THESIS {
+            return arguments;
+        }
+        if let Some(AtmosphereSample { density, pressure, speed_of_sound, .. }) = air {
+            arguments.density = Some(density);
+            arguments.pressure = pressure.map(|pressure| pressure * self.parameters.density);
+            arguments.mach = speed_of_sound.map(|sound| air_speed * sound.recip());
+        }
+        if self.by_mach && arguments.mach.is_none() {
+            self.add_mach(&mut arguments, air_speed);
+        }
+        arguments
+    }
+
+    /// Adds the density and the Mach number at a speed relative to the air, m/s, where the atmosphere depends on the altitude alone.
+    #[inline(always)]
+    fn add_mach<S: Over<P>>(&self, arguments: &mut Arguments<S>, air_speed: S) {
+        let segment = self.mode.of(Switch::Atmosphere);
+        let (density, sound) =
+            self.models.atmosphere.density_and_sound(segment, arguments.altitude, &self.cache.atmosphere);
+        arguments.density = Some(density);
+        arguments.mach = Some(air_speed * sound.recip());
     }
 
     /// The wind at an altitude, m, to the east and to the north, m/s.
@@ -521,14 +567,17 @@ impl<P: Scalar> Forces<P> {
 
     /// ρ, kg/m³.
     #[inline(always)]
-    fn density<const THESIS: bool, S: Over<P>>(&self, flow: &Flow<S>) -> S {
-        let of_model = match flow.density_and_mach {
-            Some((density, _)) => density,
-            None => {
-                self.models.atmosphere.density(self.mode.of(Switch::Atmosphere), flow.altitude, &self.cache.atmosphere)
-            }
-        };
-        of_model * self.parameters.density
+    fn density<S: Over<P>>(&self, flow: &Flow<S>) -> S {
+        self.density_of_model(&flow.arguments) * self.parameters.density
+    }
+
+    /// ρ over that of the parameters, kg/m³.
+    #[inline(always)]
+    fn density_of_model<S: Over<P>>(&self, arguments: &Arguments<S>) -> S {
+        let Arguments { altitude, density, .. } = *arguments;
+        density.unwrap_or_else(|| {
+            self.models.atmosphere.density(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere)
+        })
     }
 
     /// What the air does to the vehicle.
@@ -564,18 +613,18 @@ impl<P: Scalar> Forces<P> {
         match &self.models.aerodynamics {
             _ if THESIS => None,
             Aerodynamics::Constant { .. } | Aerodynamics::Ballistic { .. } => None,
-            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.mach(), &cache[1])),
+            Aerodynamics::MachTable(table) => Some(table.coefficients(mach, flow.arguments.mach(), &cache[1])),
             Aerodynamics::AlphaMachTable(table) => {
-                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.mach(), cache))
+                Some(table.coefficients([alpha, mach], self.angle_of_attack(time, flow), flow.arguments.mach(), cache))
             }
         }
     }
 
     /// Sine and cosine of σ.
     #[inline(always)]
-    fn sin_cos_bank<const THESIS: bool, S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
+    fn sin_cos_bank<const THESIS: bool, S: Over<P>>(&self, time: S, arguments: &Arguments<S>) -> (S, S) {
         match &self.models.control.bank_angle {
-            Command::Schedule(_) if !THESIS => self.bank_angle(time, flow).sin_cos(),
+            Command::Schedule(_) if !THESIS => self.bank_angle(time, arguments).sin_cos(),
             _ => {
                 let (sin_bank, cos_bank) = self.sin_cos_bank;
                 (S::zero() + sin_bank, S::zero() + cos_bank)
@@ -585,16 +634,17 @@ impl<P: Scalar> Forces<P> {
 
     /// σ, rad.
     #[inline(always)]
-    fn bank_angle<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
+    fn bank_angle<S: Over<P>>(&self, time: S, arguments: &Arguments<S>) -> S {
         let clock = self.clock(Switch::BankAngle, time);
-        flow.angle(&self.models.control.bank_angle, self.mode.of(Switch::BankAngle), clock) + self.parameters.bank_angle
+        arguments.angle(&self.models.control.bank_angle, self.mode.of(Switch::BankAngle), clock)
+            + self.parameters.bank_angle
     }
 
     /// α, rad: as it is commanded, or the angle between the axis and the velocity relative to the air.
     #[inline(always)]
     fn angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
         match &flow.axis {
-            None => self.commanded_angle_of_attack(time, flow),
+            None => self.commanded_angle_of_attack(time, &flow.arguments),
             Some(axis) => {
                 let Directions { ahead, speed, .. } = &flow.directions;
                 // None at rest.
@@ -606,9 +656,9 @@ impl<P: Scalar> Forces<P> {
 
     /// α, rad, as it is commanded.
     #[inline(always)]
-    fn commanded_angle_of_attack<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> S {
+    fn commanded_angle_of_attack<S: Over<P>>(&self, time: S, arguments: &Arguments<S>) -> S {
         let clock = self.clock(Switch::AngleOfAttack, time);
-        flow.angle(&self.models.control.angle_of_attack, self.mode.of(Switch::AngleOfAttack), clock)
+        arguments.angle(&self.models.control.angle_of_attack, self.mode.of(Switch::AngleOfAttack), clock)
     }
 
     /// The time by which something switches, s: that by which angles run begins with an event, where their schedules say so.
@@ -652,11 +702,11 @@ impl Models {
     }
 }
 
-impl<S: Scalar> Flow<S> {
+impl<S: Scalar> Arguments<S> {
     /// The Mach number, where something depends on it.
     #[inline(always)]
     fn mach(&self) -> S {
-        self.density_and_mach.map_or(S::zero(), |(_, mach)| mach)
+        self.mach.unwrap_or_else(S::zero)
     }
 
     /// An angle, rad, by the formula of a segment of its schedule.
@@ -703,7 +753,7 @@ impl Forces {
         let flow = self.flow::<false, _>(time, state);
         let longest = self.longest_fall(time, state, &flow);
         let air = self.air::<false, _>(time, &flow);
-        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density::<false, _>(&flow));
+        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density(&flow));
         let longest = if drag_time.is_nan() { longest } else { longest.min(DRAG_TIMES_A_STEP * drag_time) };
         longest.min(self.longest_braking(time, state))
     }
@@ -722,7 +772,7 @@ impl Forces {
     fn longest_fall(&self, time: f64, state: &State<f64>, flow: &Flow<f64>) -> f64 {
         let State { position, velocity, .. } = state;
         let radius = length(position);
-        let to_air = (flow.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
+        let to_air = (flow.arguments.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
         let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
         let rise = position.dot(velocity) / radius;
         let inertial = velocity + Vector3::z().cross(position) * self.models.planet.rotation_rate;

@@ -43,13 +43,6 @@ pub trait Scalar:
     /// The number without its derivatives.
     type Value: Scalar<Value = Self::Value, Mask = Self::Mask>;
 
-    /// Calls a function that other flights do not need, and that is not to be in their way. Not in lanes, which would leave their instructions by
-    /// a call.
-    #[inline(always)]
-    fn apart<R>(function: impl FnOnce() -> R) -> R {
-        if Self::WIDTH == 1 { called(function) } else { function() }
-    }
-
     /// The number without its derivatives.
     fn value(self) -> Self::Value;
 
@@ -225,9 +218,10 @@ impl Chain for Dual2_64 {
     }
 }
 
-/// Calls a function out of line.
+/// Calls a function out of line that other flights do not need, and that is not to be in their way. In lanes it leaves their instructions; in line,
+/// all models together make functions that take minutes to compile.
 #[inline(never)]
-fn called<R>(function: impl FnOnce() -> R) -> R {
+pub(crate) fn apart<R>(function: impl FnOnce() -> R) -> R {
     function()
 }
 

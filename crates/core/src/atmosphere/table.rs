@@ -198,13 +198,19 @@ impl Table {
         }
     }
 
+    /// Pa, at an altitude, m, by the formulas of a segment, if the table has it.
+    #[inline(always)]
+    pub fn pressure<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> Option<S> {
+        self.log_pressure.as_ref().map(|pressure| exponential(pressure, segment, altitude, hint))
+    }
+
     /// The air at an altitude, m, by the formulas of a segment.
     #[inline(always)]
     pub fn sample<S: Scalar>(&self, segment: usize, altitude: S, hint: &Hint) -> AtmosphereSample<S> {
         AtmosphereSample {
             density: self.density(segment, altitude, hint),
             temperature: self.temperature(segment, altitude, hint),
-            pressure: self.log_pressure.as_ref().map(|pressure| exponential(pressure, segment, altitude, hint)),
+            pressure: self.pressure(segment, altitude, hint),
             speed_of_sound: self.speed_of_sound(segment, altitude, hint),
         }
     }

@@ -131,6 +131,26 @@ pub fn density_and_sound_in<S: Scalar>(segment: usize, altitude: S) -> (S, S) {
     }
 }
 
+/// Density, kg/m³, and pressure, Pa, at a geometric altitude, m, by the formulas of a segment.
+#[inline(always)]
+pub fn density_and_pressure_in<S: Scalar>(segment: usize, altitude: S) -> (S, S) {
+    let altitude = within_bounds(segment, altitude);
+    let (density, molecular_scale_temperature) = match TABLE.layers.get(segment) {
+        Some(layer) => {
+            let place = layer.place(altitude);
+            (layer.density(&place), layer.molecular_scale_temperature(&place))
+        }
+        None => (TABLE.density_of_gases(altitude), TABLE.molecular_scale_temperature_of_gases(altitude)),
+    };
+    (density, pressure(density, molecular_scale_temperature))
+}
+
+/// By the law of gases, Pa (equation 42).
+#[inline(always)]
+fn pressure<S: Scalar>(density: S, molecular_scale_temperature: S) -> S {
+    density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT)
+}
+
 /// The air at a geometric altitude, m, by the formulas of a segment.
 ///
 /// ```text
@@ -152,7 +172,7 @@ pub fn sample_in<S: Scalar>(segment: usize, altitude: S) -> AtmosphereSample<S> 
     AtmosphereSample {
         density,
         temperature: Some(temperature),
-        pressure: Some(density * molecular_scale_temperature * (GAS_CONSTANT / MOLECULAR_WEIGHT)),
+        pressure: Some(pressure(density, molecular_scale_temperature)),
         speed_of_sound: Some(speed_of_sound(of_sound)),
     }
 }

@@ -7,20 +7,39 @@ use num_dual::Dual64;
 
 use crate::root;
 
+/// A quantity inside a step, at parts of it from 0 to 1.
+pub trait Inside {
+    /// The quantity with its rate of change per second.
+    fn at(&self, part: f64) -> Dual64;
+
+    /// The quantity alone: the value of that with its rate, to the last digit.
+    fn value_at(&self, part: f64) -> f64;
+}
+
+impl<F: Fn(f64) -> Dual64> Inside for F {
+    fn at(&self, part: f64) -> Dual64 {
+        self(part)
+    }
+
+    fn value_at(&self, part: f64) -> f64 {
+        self(part).re
+    }
+}
+
 /// The part of the step at which the quantity first falls to zero, if it does.
 ///
 /// A quantity that dips below zero and is back at the end of the step is found as well.
 /// One that starts at or below zero must rise first; while it sinks or comes down without having been positive,
 /// the fall is where it turns down.
-pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
+pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: &impl Inside) -> Option<f64> {
     let reach = length * start.eps.abs().max(end.eps.abs());
     if start.re.min(end.re) > reach {
         return None;
     }
     let mut from = (0.0, start);
     for part in [0.25, 0.5, 0.75, 1.0] {
-        let to = (part, if part < 1.0 { inside(part) } else { end });
-        let fall = fall_between(from, to, length, &inside);
+        let to = (part, if part < 1.0 { inside.at(part) } else { end });
+        let fall = fall_between(from, to, length, inside);
         if fall.is_some() {
             return fall;
         }
@@ -41,20 +60,14 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
 /// The inside of the step is looked at where the ends ask for it: the quantity is above zero at one end alone, or its rate changes sign
 /// between them, so that it turns inside. Where `closely`, as between the entries of tables, it may turn more than once: then also where
 /// four times the greater rate of the two ends would carry it to zero. An extremum that [`maximum`] finds is found here as well.
-pub fn first_crossing(
-    start: Dual64,
-    end: Dual64,
-    length: f64,
-    closely: bool,
-    inside: impl Fn(f64) -> Dual64,
-) -> Option<f64> {
+pub fn first_crossing(start: Dual64, end: Dual64, length: f64, closely: bool, inside: &impl Inside) -> Option<f64> {
     if !may_cross(start, end, length, closely) {
         return None;
     }
     let mut from = (0.0, start);
     for part in [0.25, 0.5, 0.75, 1.0] {
-        let to = (part, if part < 1.0 { inside(part) } else { end });
-        let crossing = crossing_between(from, to, &inside);
+        let to = (part, if part < 1.0 { inside.at(part) } else { end });
+        let crossing = crossing_between(from, to, inside);
         if crossing.is_some() {
             return crossing;
         }
@@ -62,7 +75,7 @@ pub fn first_crossing(
     }
     if dips(start, end) || rises(start, end) {
         // Between the quarters the rates may tell of no turn, or of another.
-        return crossing_between((0.0, start), (1.0, end), &inside);
+        return crossing_between((0.0, start), (1.0, end), inside);
     }
     None
 }
@@ -89,8 +102,8 @@ fn rises(start: Dual64, end: Dual64) -> bool {
 }
 
 /// The part of the step at which the quantity is greatest, if it rises at the start and falls at the end.
-pub fn maximum(start: Dual64, end: Dual64, inside: impl Fn(f64) -> Dual64) -> Option<f64> {
-    (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), &inside))
+pub fn maximum(start: Dual64, end: Dual64, inside: &impl Inside) -> Option<f64> {
+    (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), inside))
 }
 
 /// When a step is expected to reach a place that will cut it.
@@ -137,10 +150,10 @@ pub fn predicted_fall(now: Dual64, before: Option<(f64, Dual64)>, within: f64) -
 type Sample = (f64, Dual64);
 
 /// A fall; of a quantity that never is above zero, where it turns down.
-fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
+fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Inside) -> Option<f64> {
     if a.1.eps > 0.0 && b.1.eps < 0.0 {
         let part = turning_point(a, b, inside);
-        let top = (part, inside(part));
+        let top = (part, inside.at(part));
         return if top.1.re <= 0.0 { Some(part) } else { crossing_after(top, b, inside) };
     }
     if a.1.re <= 0.0 {
@@ -153,10 +166,10 @@ fn fall_between(a: Sample, b: Sample, length: f64, inside: &impl Fn(f64) -> Dual
 }
 
 /// A fall from above zero.
-fn crossing_between(a: Sample, b: Sample, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
+fn crossing_between(a: Sample, b: Sample, inside: &impl Inside) -> Option<f64> {
     let turning = || {
         let part = turning_point(a, b, inside);
-        (part, inside(part))
+        (part, inside.at(part))
     };
     if a.1.eps > 0.0 && b.1.eps < 0.0 {
         return if b.1.re <= 0.0 { crossing_after(turning(), b, inside) } else { None };
@@ -171,14 +184,14 @@ fn crossing_between(a: Sample, b: Sample, inside: &impl Fn(f64) -> Dual64) -> Op
 }
 
 /// The zero between a place above it and one that is not.
-fn crossing_after(above: Sample, end: Sample, inside: &impl Fn(f64) -> Dual64) -> Option<f64> {
-    let bracketed = || root::bracketed(|part| inside(part).re, (above.0, above.1.re), (end.0, end.1.re), 0.0);
+fn crossing_after(above: Sample, end: Sample, inside: &impl Inside) -> Option<f64> {
+    let bracketed = || root::bracketed(|part| inside.value_at(part), (above.0, above.1.re), (end.0, end.1.re), 0.0);
     (above.1.re > 0.0 && end.1.re <= 0.0).then(bracketed)
 }
 
 /// Where the rate changes sign.
-fn turning_point(a: Sample, b: Sample, inside: &impl Fn(f64) -> Dual64) -> f64 {
-    root::bracketed(|part| inside(part).eps, (a.0, a.1.eps), (b.0, b.1.eps), TURNING_POINT_RESOLUTION)
+fn turning_point(a: Sample, b: Sample, inside: &impl Inside) -> f64 {
+    root::bracketed(|part| inside.at(part).eps, (a.0, a.1.eps), (b.0, b.1.eps), TURNING_POINT_RESOLUTION)
 }
 
 /// Parts of a step to which a turning point is located; the value there is off by the square of it.

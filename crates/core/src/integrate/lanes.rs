@@ -9,6 +9,7 @@ use crate::scalar::Lanes;
 /// Lanes without an integrator repeat what was in them.
 #[derive(Debug)]
 pub struct LaneSteps<const N: usize, const L: usize> {
+    instructions: isa::InstructionSet,
     time: Lanes<L>,
     length: Lanes<L>,
     end_time: Lanes<L>,
@@ -18,10 +19,12 @@ pub struct LaneSteps<const N: usize, const L: usize> {
     end_derivative: [Lanes<L>; N],
 }
 
-impl<const N: usize, const L: usize> Default for LaneSteps<N, L> {
-    fn default() -> Self {
+impl<const N: usize, const L: usize> LaneSteps<N, L> {
+    /// Lanes without integrators; none where the processor has no vectors of four numbers, and flights are faster one by one.
+    pub fn new() -> Option<Self> {
         let none = Lanes([0.0; L]);
-        Self {
+        Some(Self {
+            instructions: isa::widest()?,
             time: none,
             length: none,
             end_time: none,
@@ -29,11 +32,9 @@ impl<const N: usize, const L: usize> Default for LaneSteps<N, L> {
             derivative: [none; N],
             trial: step::Trial::none(),
             end_derivative: [none; N],
-        }
+        })
     }
-}
 
-impl<const N: usize, const L: usize> LaneSteps<N, L> {
     /// Loads the next explicit step of an integrator with its own system into a lane; it ends at `end` at the latest.
     ///
     /// # Errors
@@ -57,7 +58,7 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
 
     /// Tries the steps of all lanes.
     pub fn attempt<M: System<Lanes<L>, N>>(&mut self, system: &M) {
-        isa::attempt(self, system);
+        self.instructions.attempt(self, system);
     }
 
     /// Lets the integrator of a lane take its step, if that is exact enough; otherwise its next one will be shorter.
@@ -71,16 +72,18 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
         integrator.judge(system, &self.trial.outcome_of(lane), self.end_time.0[lane], rest)
     }
 
+    #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "there are no lanes"))]
     #[inline(always)]
     fn attempt_here<M: System<Lanes<L>, N>>(&mut self, system: &M) {
-        self.trial = step::attempt(system, self.time, &self.state, &self.derivative, self.length);
-        self.end_derivative = system.derivative(self.end_time, &self.trial.outcome.end);
+        let times = [self.time, self.end_time];
+        (self.trial, self.end_derivative) =
+            step::attempt_in_lanes(system, times, &self.state, &self.derivative, self.length);
     }
 }
 
-/// The instructions by which lanes are computed; none where the processor has no vectors of four numbers, and flights are faster one by one.
+/// The instructions by which lanes are computed; none where there are no [`LaneSteps`].
 pub fn lane_instructions() -> Option<&'static str> {
-    isa::widest()
+    isa::widest().map(isa::InstructionSet::name)
 }
 
 /// The instruction sets among which the processor decides when the program runs.
@@ -90,33 +93,29 @@ mod isa {
 
     use super::{LaneSteps, Lanes, System};
 
-    #[derive(Clone, Copy)]
-    enum InstructionSet {
+    #[derive(Clone, Copy, Debug)]
+    pub(super) enum InstructionSet {
         Avx512,
         Avx2,
-        Baseline,
     }
 
-    static WIDEST: LazyLock<InstructionSet> = LazyLock::new(|| {
+    static WIDEST: LazyLock<Option<InstructionSet>> = LazyLock::new(|| {
         if is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512dq")
             && is_x86_feature_detected!("avx512vl")
             && is_x86_feature_detected!("avx512bw")
         {
-            InstructionSet::Avx512
+            Some(InstructionSet::Avx512)
         } else if is_x86_feature_detected!("avx2") {
-            InstructionSet::Avx2
+            Some(InstructionSet::Avx2)
         } else {
-            InstructionSet::Baseline
+            None
         }
     });
 
-    pub(super) fn widest() -> Option<&'static str> {
-        match *WIDEST {
-            InstructionSet::Avx512 => Some("avx512"),
-            InstructionSet::Avx2 => Some("avx2"),
-            InstructionSet::Baseline => None,
-        }
+    /// The widest that the processor has. There is no other way to come by one.
+    pub(super) fn widest() -> Option<InstructionSet> {
+        *WIDEST
     }
 
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
@@ -129,19 +128,28 @@ mod isa {
         steps.attempt_here(system);
     }
 
-    pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
-        steps: &mut LaneSteps<N, L>,
-        system: &M,
-    ) {
-        // The one place where the program is not safe by its types alone: functions of wider instructions may be called where the processor has
-        // them, which is asked here and nowhere else.
-        #[expect(unsafe_code, reason = "the compiler does not know on which processor the program will run")]
-        match *WIDEST {
-            // SAFETY: the processor has these instructions.
-            InstructionSet::Avx512 => unsafe { by_avx512(steps, system) },
-            // SAFETY: the processor has these instructions.
-            InstructionSet::Avx2 => unsafe { by_avx2(steps, system) },
-            InstructionSet::Baseline => steps.attempt_here(system),
+    impl InstructionSet {
+        pub(super) fn name(self) -> &'static str {
+            match self {
+                Self::Avx512 => "avx512",
+                Self::Avx2 => "avx2",
+            }
+        }
+
+        pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
+            self,
+            steps: &mut LaneSteps<N, L>,
+            system: &M,
+        ) {
+            // The one place where the program is not safe by its types alone: functions of wider instructions may be called where the processor
+            // has them, which is asked above and nowhere else.
+            #[expect(unsafe_code, reason = "the compiler does not know on which processor the program will run")]
+            match self {
+                // SAFETY: the processor has these instructions.
+                Self::Avx512 => unsafe { by_avx512(steps, system) },
+                // SAFETY: the processor has these instructions.
+                Self::Avx2 => unsafe { by_avx2(steps, system) },
+            }
         }
     }
 }
@@ -151,14 +159,24 @@ mod isa {
 mod isa {
     use super::{LaneSteps, Lanes, System};
 
-    pub(super) fn widest() -> Option<&'static str> {
+    #[derive(Clone, Copy, Debug)]
+    pub(super) enum InstructionSet {}
+
+    pub(super) fn widest() -> Option<InstructionSet> {
         None
     }
 
-    pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
-        steps: &mut LaneSteps<N, L>,
-        system: &M,
-    ) {
-        steps.attempt_here(system);
+    impl InstructionSet {
+        pub(super) fn name(self) -> &'static str {
+            match self {}
+        }
+
+        pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
+            self,
+            _: &mut LaneSteps<N, L>,
+            _: &M,
+        ) {
+            match self {}
+        }
     }
 }

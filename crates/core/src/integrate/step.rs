@@ -100,24 +100,50 @@ pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
             slopes[$stage] = system.derivative(later(time, length, tableau::NODES[$stage - 1]), &advanced(start, &slope, length));
         )*};
     }
-    if S::WIDTH == 1 {
-        stages!(1 2 3 4 5 6 7 8 9 10 11);
-    } else {
-        // In lanes there is no time to save, and the program would be long.
-        for stage in 1..STAGES {
-            let slope = sum(&slopes, tableau::STAGES[stage - 1]);
-            slopes[stage] =
-                system.derivative(later(time, length, tableau::NODES[stage - 1]), &advanced(start, &slope, length));
-        }
-    }
+    stages!(1 2 3 4 5 6 7 8 9 10 11);
     let mean = sum(&slopes, tableau::WEIGHTS);
-    let third = sum(&slopes, tableau::THIRD);
-    let mut error_third = mean;
+    let outcome = outcome(&slopes, &mean, advanced(start, &mean, length));
+    Trial { slopes, outcome }
+}
+
+/// Tries the steps of several integrators, which end at some times; and the rates of change there.
+#[inline(always)]
+pub(super) fn attempt_in_lanes<F: System<Lanes<L>, N>, const N: usize, const L: usize>(
+    system: &F,
+    [time, end_time]: [Lanes<L>; 2],
+    start: &[Lanes<L>; N],
+    derivative: &[Lanes<L>; N],
+    length: Lanes<L>,
+) -> (Trial<Lanes<L>, N>, [Lanes<L>; N]) {
+    let mut slopes = [[Lanes([0.0; L]); N]; STAGES];
+    slopes[0] = *derivative;
+    let mut stage = 1;
+    // The system, which is long, stands here once, and not once for every stage and the end.
+    let (mean, end, end_derivative) = loop {
+        let is_end = stage == STAGES;
+        let mean = sum(&slopes, if is_end { tableau::WEIGHTS } else { tableau::STAGES[stage - 1] });
+        let then = if is_end { end_time } else { later(time, length, tableau::NODES[stage - 1]) };
+        let there = advanced(start, &mean, length);
+        let slope = system.derivative(then, &there);
+        if is_end {
+            break (mean, there, slope);
+        }
+        slopes[stage] = slope;
+        stage += 1;
+    };
+    let outcome = outcome(&slopes, &mean, end);
+    (Trial { slopes, outcome }, end_derivative)
+}
+
+/// Where the slopes of stages lead, with their mean, to an end.
+#[inline(always)]
+fn outcome<S: Scalar, const N: usize>(slopes: &[[S; N]; STAGES], mean: &[S; N], end: [S; N]) -> Outcome<S, N> {
+    let third = sum(slopes, tableau::THIRD);
+    let mut error_third = *mean;
     for (error, third) in error_third.iter_mut().zip(third) {
         *error -= third;
     }
-    let error_fifth = sum(&slopes, tableau::ERROR_FIFTH);
-    Trial { outcome: Outcome { end: advanced(start, &mean, length), error_fifth, error_third }, slopes }
+    Outcome { end, error_fifth: sum(slopes, tableau::ERROR_FIFTH), error_third }
 }
 
 impl<const N: usize> Trial<f64, N> {

@@ -51,6 +51,26 @@ pub(super) fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
     S::select(in_cone, faded, full)
 }
 
+/// A velocity less that of a wind to the east and to the north, m/s, at a planet-fixed position, m.
+#[inline(always)]
+pub(super) fn relative_to_air<S: Scalar>(
+    velocity: &Vector3<S>,
+    [east, north]: [S; 2],
+    position: &Vector3<S>,
+) -> Vector3<S> {
+    let [x, y, z] = [position.x, position.y, position.z];
+    // ẑ × r, of the length of the distance from the axis.
+    let equatorial = (x * x + y * y).sqrt();
+    let over_equatorial = reciprocal_or_one(equatorial);
+    let over_radius = reciprocal_or_one(length(position));
+    let fade = wind_fade(equatorial * over_radius);
+    let [east, north] = [east * fade, north * fade];
+    let east = Vector3::new(-y, x, S::zero()) * (over_equatorial * east);
+    let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
+    let north = to_north * (over_equatorial * over_radius * north);
+    velocity - east - north
+}
+
 /// The share of the wind that is left near a pole: with x = min(cos φ/ε, 1), x³(10 - 15x + 6x²).
 ///
 /// Wind to the north blows towards the pole from all sides, and wind to the east around it: without the fade the air would jump to the

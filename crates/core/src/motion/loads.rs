@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::directions::{Directions, lift_fade_over_cosine};
-use super::{Flow, Forces, Local, Parameters, State, Switch};
+use super::{Flow, Forces, Parameters, State, Switch};
 use crate::atmosphere::{Atmosphere, AtmosphereSample};
 use crate::control::Command;
 use crate::event::Quantity;
@@ -62,19 +62,14 @@ impl<P: Scalar> Forces<P> {
     pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &State<S>) -> Loads<S> {
         let State { position, velocity, .. } = state;
         let mut flow = self.flow::<false, _>(time, state);
-        if flow.density_and_mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
-            let (density, sound) = self.models.atmosphere.density_and_sound(
-                self.mode.of(Switch::Atmosphere),
-                flow.altitude,
-                &self.cache.atmosphere,
-            );
-            flow.density_and_mach = Some((density, flow.directions.speed * sound.recip()));
+        if flow.arguments.mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
+            self.add_mach(&mut flow.arguments, flow.directions.speed);
         }
         let Directions { radius, speed, up, ahead, .. } = &flow.directions;
-        let density = self.density::<false, _>(&flow);
+        let density = self.density(&flow);
         let dynamic_pressure = density * *speed * *speed * 0.5;
         let air = self.air::<false, _>(time, &flow);
-        let deceleration = if flow.ground_speed.less_than(f64::MIN_POSITIVE) {
+        let deceleration = if flow.arguments.ground_speed.less_than(f64::MIN_POSITIVE) {
             -length(&self.acceleration(time, state))
         } else if matches!(self.models.wind, Wind::Still) && self.burn.is_none() {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
@@ -83,15 +78,15 @@ impl<P: Scalar> Forces<P> {
             air.drag * density + (inward * up.dot(ahead) + axial * ahead.z)
                 - outward * self.models.planet.rotation_rate.powi(2)
         } else {
-            -self.acceleration(time, state).dot(velocity) * flow.ground_speed.recip()
+            -self.acceleration(time, state).dot(velocity) * flow.arguments.ground_speed.recip()
         };
         let load_factor = self.load_factor(time, state, &flow, dynamic_pressure);
-        let mach = flow.density_and_mach.map(|(_, mach)| mach);
+        let mach = flow.arguments.mach;
         let heat_flux = self.heat_flux(density, *speed);
         Loads {
-            altitude: flow.altitude,
+            altitude: flow.arguments.altitude,
             density,
-            speed: flow.ground_speed,
+            speed: flow.arguments.ground_speed,
             air_speed: *speed,
             mach,
             dynamic_pressure,
@@ -135,9 +130,8 @@ impl<P: Scalar> Forces<P> {
 
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
     pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &State<S>) -> S {
-        // Whatever the density is.
-        let nowhere = Local { air: None, potential: None };
-        let left = self.flow_without_axis::<false, _>(nowhere, state).directions.left;
+        let altitude = self.models.planet.shape.altitude(&state.position);
+        let (Directions { left, .. }, _) = self.motion_in_air::<false, _>(altitude, state);
         left.dot(&left)
     }
 }
@@ -171,7 +165,7 @@ impl Forces {
             return [bank_angle + self.parameters.bank_angle, *angle_of_attack];
         }
         let flow = self.flow_where_mach_matters(time, state);
-        [self.bank_angle(time, &flow), self.angle_of_attack(time, &flow)]
+        [self.bank_angle(time, &flow.arguments), self.angle_of_attack(time, &flow)]
     }
 
     /// The air in a state, as far as the atmosphere knows it.

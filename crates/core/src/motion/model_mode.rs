@@ -249,8 +249,9 @@ impl<P: Scalar> Forces<P> {
         if self.by_mach {
             return self.flow::<false, _>(time, state);
         }
+        let altitude = self.models.planet.shape.altitude(&state.position);
         let potential = self.potential_where_asked(|| state.position);
-        self.flow_in::<false, _>(time, Local { air: None, potential }, state)
+        self.flow_in::<false, _>(time, altitude, Local { air: None, potential }, state)
     }
 
     /// A quantity in a state, at a time, s, and by a clock that may lag behind it. `flow` is made for what asks for more than time and place.
@@ -266,7 +267,7 @@ impl<P: Scalar> Forces<P> {
         match quantity {
             SwitchQuantity::Along(Against::Time) => clock,
             SwitchQuantity::Along(Against::Altitude) => self.models.planet.shape.altitude(&state.position),
-            SwitchQuantity::Along(against) => flow().quantity(against, clock),
+            SwitchQuantity::Along(against) => flow().arguments.quantity(against, clock),
             SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow()),
             SwitchQuantity::AirSpeed => flow().directions.speed,
             // It needs the density of the air.

@@ -1,9 +1,11 @@
 //! The quantities that an event may wait for.
 
+use std::cell::OnceCell;
+
 use nalgebra::Vector3;
 use num_dual::Dual64;
 
-use super::{Forces, Formulation, State, moving};
+use super::{Forces, Formulation, Loads, State, moving};
 use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::planet::Planet;
@@ -43,6 +45,17 @@ impl<P: Scalar> Forces<P> {
         at: &StateRate<S>,
         track: &GreatCircle<S>,
     ) -> S {
+        self.quantity_with(quantity, at, track, &OnceCell::new())
+    }
+
+    /// The same with the loads at the moment, which are computed where they are asked for.
+    pub(crate) fn quantity_with<S: Over<P> + Scalar<Mask = bool>>(
+        &self,
+        quantity: Quantity,
+        at: &StateRate<S>,
+        track: &GreatCircle<S>,
+        loads: &OnceCell<Loads<S>>,
+    ) -> S {
         let StateRate { time, state } = at;
         let State { position, velocity, mass, heat_load } = state;
         let planet = &self.models.planet;
@@ -79,7 +92,7 @@ impl<P: Scalar> Forces<P> {
             | Quantity::WallTemperature
             | Quantity::Deceleration
             | Quantity::Density => {
-                let loads = self.loads(*time, state);
+                let loads = loads.get_or_init(|| self.loads(*time, state));
                 loads.quantity(quantity, self.models.heating.as_ref()).unwrap_or_else(S::zero)
             }
         }

@@ -170,14 +170,14 @@ impl<P: Scalar> Spherical<P> {
         let [up, east, north] = unit.map(|part| part * speed);
         let position = Vector3::new(radius, S::zero(), S::zero());
         let forces = &self.0;
-        let local = forces.local::<THESIS, _>(time, || place.position());
+        let local = forces.local::<THESIS, _>(time, altitude, || place.position());
         match forces.wind::<THESIS, _>(altitude) {
             None => {
                 let still = Directions { speed, ..Directions::of(&position, &Vector3::new(up, east, north)) };
                 let flow = forces.flow_of::<THESIS, _>(altitude, local, still, speed, mass);
-                let (air, density) = (forces.air::<THESIS, _>(time, &flow), forces.density::<THESIS, _>(&flow));
+                let (air, density) = (forces.air::<THESIS, _>(time, &flow), forces.density(&flow));
                 let lift_over_cos_gamma = air.lift * density * lift_fade_over_cosine((cos_gamma * cos_gamma).sqrt());
-                let (sin_sigma, cos_sigma) = forces.sin_cos_bank::<THESIS, _>(time, &flow);
+                let (sin_sigma, cos_sigma) = forces.sin_cos_bank::<THESIS, _>(time, &flow.arguments);
                 [-(air.drag * density), lift_over_cos_gamma * cos_gamma * cos_sigma, lift_over_cos_gamma * sin_sigma]
             }
             Some(wind) => {

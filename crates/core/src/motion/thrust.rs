@@ -3,13 +3,13 @@
 use nalgebra::{Rotation3, Vector3};
 
 use super::directions::{Directions, lift_fade_over_cosine, turned};
-use super::{Flow, Forces, State, Switch};
+use super::{Arguments, Flow, Forces, State, Switch};
 use crate::control::Command;
 use crate::coordinates::PlanetFixed;
 use crate::elementary::atan2;
 use crate::planet::Planet;
 use crate::propulsion::ThrustAxis;
-use crate::scalar::{Over, Scalar, length, reciprocal_or_one};
+use crate::scalar::{Over, Scalar, apart, length, reciprocal_or_one};
 use crate::steering::{Program, ProgramAxes, Steering};
 
 /// A thrust that acts, over the mass of the vehicle at the start of the phase, and the mass that it burns. Both run along straight lines of
@@ -87,6 +87,12 @@ impl<P: Scalar> Forces<P> {
         Some(mass.recip() * self.mass)
     }
 
+    /// Whether engines depend on the pressure of the air.
+    #[inline(always)]
+    pub(super) fn takes_pressure(&self) -> bool {
+        self.burn.as_ref().is_some_and(|burn| burn.exit_area_over_mass.is_some())
+    }
+
     /// The thrust over the mass, where there is one, of a vehicle on which the air acts with an acceleration, m/s².
     ///
     /// # Reference
@@ -107,7 +113,7 @@ impl<P: Scalar> Forces<P> {
                 let direction = along(axis, &self.models.planet, time, &state.planet_fixed());
                 Some(Push { acceleration: direction * acceleration, throttle: S::one() })
             }
-            ThrustDirection::Steered => Some(S::apart(|| self.push_of_engines(burn, time, state, flow, aerodynamic))),
+            ThrustDirection::Steered => Some(apart(|| self.push_of_engines(burn, time, state, flow, aerodynamic))),
         }
     }
 
@@ -153,13 +159,10 @@ impl<P: Scalar> Forces<P> {
         let in_vacuum = (elapsed * burn.acceleration_rate + burn.acceleration) * ratio;
         let back_pressure = match burn.exit_area_over_mass {
             // Zero where the atmosphere has no pressure.
-            Some(area) => {
-                let pressure = self.air_of(time, &state.position, flow.altitude).pressure;
-                ratio * area * pressure.unwrap_or_else(S::zero)
-            }
+            Some(area) => ratio * area * flow.arguments.pressure.unwrap_or_else(S::zero),
             None => S::zero(),
         };
-        let direction = self.axis(time, state, flow);
+        let direction = self.axis(time, state, &flow.arguments);
         let most = burn.load_limit.map(|limit| {
             let limit = S::zero() + limit;
             let along = aerodynamic.dot(&direction);
@@ -192,14 +195,14 @@ impl<P: Scalar> Forces<P> {
 
     /// Where the axis of the vehicle points, of length 1; shorter within [`LIFT_FADE_ANGLE`](super::LIFT_FADE_ANGLE) of the vertical, where
     /// an angle of attack fades out as lift does.
-    pub(super) fn axis<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Vector3<S> {
+    pub(super) fn axis<S: Over<P>>(&self, time: S, state: &State<S>, arguments: &Arguments<S>) -> Vector3<S> {
         let planet = &self.models.planet;
         match &self.models.steering {
             Steering::Vertical => planet.shape.normal(&state.position),
-            Steering::Velocity => self.axis_by_velocity(time, state, flow),
+            Steering::Velocity => self.axis_by_velocity(time, state, arguments),
             Steering::Program(Program { axes, pitch, yaw }) => {
-                let pitch = flow.angle(pitch, self.mode.of(Switch::Pitch), self.clock(Switch::Pitch, time));
-                let yaw = flow.angle(yaw, self.mode.of(Switch::Yaw), self.clock(Switch::Yaw, time));
+                let pitch = arguments.angle(pitch, self.mode.of(Switch::Pitch), self.clock(Switch::Pitch, time));
+                let yaw = arguments.angle(yaw, self.mode.of(Switch::Yaw), self.clock(Switch::Yaw, time));
                 let ((sin_pitch, cos_pitch), (sin_yaw, cos_yaw)) = (pitch.sin_cos(), yaw.sin_cos());
                 let components = Vector3::new(cos_pitch * cos_yaw, cos_pitch * sin_yaw, sin_pitch);
                 match axes {
@@ -219,15 +222,15 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The axis that the angle of attack leans from the velocity relative to the planet; vertical at rest.
-    fn axis_by_velocity<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Vector3<S> {
+    fn axis_by_velocity<S: Over<P>>(&self, time: S, state: &State<S>, arguments: &Arguments<S>) -> Vector3<S> {
         let Directions { speed, up, ahead, left, cos_gamma, .. } = Directions::of(&state.position, &state.velocity);
         let at_rest = speed.less_than(f64::MIN_POSITIVE);
         let normal = self.models.planet.shape.normal(&state.position);
         let leant = if matches!(self.models.control.angle_of_attack, Command::Constant(0.0)) {
             ahead
         } else {
-            let (sin, cos) = self.commanded_angle_of_attack(time, flow).sin_cos();
-            let (sin_bank, cos_bank) = self.sin_cos_bank::<false, _>(time, flow);
+            let (sin, cos) = self.commanded_angle_of_attack(time, arguments).sin_cos();
+            let (sin_bank, cos_bank) = self.sin_cos_bank::<false, _>(time, arguments);
             let side = sin * lift_fade_over_cosine(cos_gamma);
             let (side_up, side_left) = (side * cos_bank, side * sin_bank);
             up * side_up + left * side_left + ahead * (cos - side_up * up.dot(&ahead))
@@ -252,7 +255,7 @@ impl Forces {
     /// The angle of the axis of the vehicle above the plane normal to the radius vector, rad.
     pub(crate) fn pitch(&self, time: f64, state: &State<f64>) -> f64 {
         let flow = self.flow_where_mach_matters(time, state);
-        let axis = self.axis(time, state, &flow);
+        let axis = self.axis(time, state, &flow.arguments);
         atan2(axis.dot(&state.position), axis.cross(&state.position).norm())
     }
 }

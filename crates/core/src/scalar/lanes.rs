@@ -35,6 +35,36 @@ impl<const L: usize> Lanes<L> {
     }
 }
 
+/// A function of each number, where it is not the same formula for all of them: rare, and out of line, as the program would be long.
+#[cold]
+#[inline(never)]
+fn one_by_one<const L: usize>(numbers: &Lanes<L>, function: fn(f64) -> f64) -> Lanes<L> {
+    numbers.map(function)
+}
+
+/// The same of the sine and the cosine.
+#[cold]
+#[inline(never)]
+fn sines_and_cosines_one_by_one<const L: usize>(angles: &Lanes<L>) -> (Lanes<L>, Lanes<L>) {
+    let [mut sines, mut cosines] = [[0.0; L]; 2];
+    for (lane, angle) in angles.0.iter().enumerate() {
+        (sines[lane], cosines[lane]) = elementary::sin_cos(*angle);
+    }
+    (Lanes(sines), Lanes(cosines))
+}
+
+/// A row of a table for one lane, out of line: finding it is long, and there are several.
+#[inline(never)]
+fn picked<const K: usize>(number: f64, row: &impl Fn(f64) -> [f64; K]) -> [f64; K] {
+    row(number)
+}
+
+/// The same of a look-up.
+#[inline(never)]
+fn looked_up<const N: usize, const K: usize>(at: [f64; N], table: &impl LookUp<N, K>) -> [f64; K] {
+    table.at(at)
+}
+
 /// Rows of numbers, one for each lane, as numbers in lanes.
 #[inline(always)]
 fn transposed<const K: usize, const L: usize>(rows: &[[f64; K]; L]) -> [Lanes<L>; K] {
@@ -157,7 +187,7 @@ impl<const L: usize> Scalar for Lanes<L> {
     fn pick<const K: usize>(self, row: impl Fn(f64) -> [f64; K]) -> [Self; K] {
         let mut rows = [[0.0; K]; L];
         for (place, number) in rows.iter_mut().zip(self.0) {
-            *place = row(number);
+            *place = picked(number, &row);
         }
         transposed(&rows)
     }
@@ -166,7 +196,7 @@ impl<const L: usize> Scalar for Lanes<L> {
     fn look_up<const N: usize, const K: usize>(at: [Self; N], table: &impl LookUp<N, K>) -> [Self; K] {
         let mut found = [[0.0; K]; L];
         for (lane, place) in found.iter_mut().enumerate() {
-            *place = table.at(at.map(|number| number.0[lane]));
+            *place = looked_up(at.map(|number| number.0[lane]), table);
         }
         transposed(&found)
     }
@@ -186,27 +216,27 @@ impl<const L: usize> Scalar for Lanes<L> {
         if self.all(elementary::has_normal_exponential) {
             self.map(elementary::normal_exponential)
         } else {
-            self.map(elementary::exp)
+            one_by_one(&self, elementary::exp)
         }
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        if self.all(elementary::is_normal) { self.map(elementary::logarithm) } else { self.map(elementary::ln) }
+        if self.all(elementary::is_normal) {
+            self.map(elementary::logarithm)
+        } else {
+            one_by_one(&self, elementary::ln)
+        }
     }
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let are_few = self.all(elementary::has_few_quadrants);
+        if !self.all(elementary::has_few_quadrants) {
+            return sines_and_cosines_one_by_one(&self);
+        }
         let [mut sines, mut cosines] = [[0.0; L]; 2];
-        if are_few {
-            for lane in 0..L {
-                (sines[lane], cosines[lane]) = elementary::sin_cos_of_few_quadrants(self.0[lane]);
-            }
-        } else {
-            for lane in 0..L {
-                (sines[lane], cosines[lane]) = elementary::sin_cos(self.0[lane]);
-            }
+        for lane in 0..L {
+            (sines[lane], cosines[lane]) = elementary::sin_cos_of_few_quadrants(self.0[lane]);
         }
         (Self(sines), Self(cosines))
     }

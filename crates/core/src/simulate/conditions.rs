@@ -9,8 +9,9 @@ use super::detector::{AT_END, Detector};
 use super::step_view::StepView;
 use crate::coordinates::GreatCircle;
 use crate::event::{Condition, Direction, Effect, Quantity, Trigger};
-use crate::integrate::event::{self, PredictedCrossing};
+use crate::integrate::event::{self, Inside, PredictedCrossing};
 use crate::motion::{Forces, Formulation, StateRate};
+use crate::scalar::Scalar;
 use crate::scenario::Case;
 use crate::trajectory::Termination;
 
@@ -95,7 +96,7 @@ impl PendingCondition {
     }
 
     /// How far the quantity is before the value.
-    fn before(&self, quantity: Dual64) -> Dual64 {
+    fn before<S: Scalar>(&self, quantity: S) -> S {
         self.condition.before(quantity) + self.margin
     }
 
@@ -141,10 +142,10 @@ impl ConditionDetector {
     }
 
     /// The reading of a quantity next to its last one.
-    fn continued(&self, quantity: Quantity, reading: Dual64) -> Dual64 {
+    fn continued<S: Scalar<Value = f64>>(&self, quantity: Quantity, reading: S) -> S {
         match quantity {
             Quantity::Downrange => {
-                let turns = ((self.last[quantity as usize].re - reading.re) / self.around).round();
+                let turns = ((self.last[quantity as usize].re - reading.value()) / self.around).round();
                 reading + turns * self.around
             }
             _ => reading,
@@ -154,8 +155,10 @@ impl ConditionDetector {
     /// Every quantity for which a condition waits.
     fn read(&self, forces: &Forces, moment: &StateRate) -> Readings {
         let mut quantities = self.last;
+        let loads = OnceCell::new();
         for watched in &self.watched {
-            quantities[*watched as usize] = self.quantity(*watched, forces, moment);
+            let reading = forces.quantity_with(*watched, moment, &self.track, &loads);
+            quantities[*watched as usize] = self.continued(*watched, reading);
         }
         quantities
     }
@@ -307,6 +310,29 @@ impl ConditionDetector {
     }
 }
 
+/// How far the quantity of a condition is before its value, in a step.
+struct ConditionInside<'a, 'b, F, const N: usize> {
+    detector: &'a ConditionDetector,
+    /// The place of the condition in the list.
+    index: usize,
+    step: &'a StepView<'b, F, N>,
+}
+
+impl<F: Formulation<N>, const N: usize> Inside for ConditionInside<'_, '_, F, N> {
+    fn at(&self, part: f64) -> Dual64 {
+        self.detector.ahead(self.index, self.step.motion.forces(), &self.step.on_dense_output(part))
+    }
+
+    fn value_at(&self, part: f64) -> f64 {
+        let Self { detector, index, step } = self;
+        let pending = &detector.all[*index];
+        let quantity = pending.condition.quantity;
+        let track = detector.track.map(|number| number.re);
+        let reading = step.motion.forces().quantity(quantity, &step.state_inside(part), &track);
+        pending.before(detector.continued(quantity, reading))
+    }
+}
+
 impl Detector for ConditionDetector {
     /// The place of the condition in the list.
     type Located = usize;
@@ -333,8 +359,8 @@ impl Detector for ConditionDetector {
             if start.re > 0.0 && is_behind {
                 continue;
             }
-            let inside = |part| self.ahead(index, forces, &step.on_dense_output(part));
-            if let Some(part) = event::first_crossing(start, end, length, forces.has_tables(), inside)
+            let inside = ConditionInside { detector: self, index, step };
+            if let Some(part) = event::first_crossing(start, end, length, forces.has_tables(), &inside)
                 && first.is_none_or(|(least, _)| part < least)
             {
                 first = Some((part, index));

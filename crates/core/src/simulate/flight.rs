@@ -14,7 +14,7 @@ use crate::event::{Effect, Separation, ThrustCommand, Tilt};
 use crate::integrate::event::PredictedCrossing;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, Chatter, Formulation, MASS, Singularity, State, StateRate};
+use crate::motion::{self, Chatter, Formulation, MASS, ModelMode, Singularity, State, StateRate};
 use crate::propulsion::{Impulse, ThrustAxis};
 use crate::scenario::{Change, Phase, Scenario};
 use crate::trajectory::{Arrival, EventRecord, Instant, SeparationRecord, Termination, Warning};
@@ -30,6 +30,8 @@ pub(super) struct Flight<'a, F, const N: usize> {
     phase: Phase,
     time: f64,
     state: [f64; N],
+    /// When the next step must end at the latest, s.
+    horizon: f64,
     /// The rates of change of the state, where they were computed after the last step: a restart needs them once more.
     rates: Option<[f64; N]>,
     /// Of the motion, to look inside steps and ahead of them.
@@ -80,6 +82,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             phase,
             time,
             state,
+            horizon: f64::INFINITY,
             rates: None,
             evaluations: 0,
             log,
@@ -88,6 +91,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
+        let end = self.begins()?;
+        self.horizon = self.next_instant();
+        Ok(end)
+    }
+
+    fn begins(&mut self) -> Result<Option<Arrival>, SimulationError> {
         let is_on_ground = self.scenario.starts_on_stop_altitude() && !self.phase.held;
         // The time of a body may be over before it is set free.
         let ending = self.time_limit();
@@ -120,9 +129,14 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if self.scenario.case().stop.altitude == 0.0 { Termination::SurfaceImpact } else { Termination::StopAltitude }
     }
 
-    /// When the next step must end at the latest, s: with the time of the flight, with a segment of a schedule, where a condition on
-    /// the time is met, where the propellant is spent, or where a canopy begins to fill or is full.
+    /// When the next step must end at the latest, s.
     pub(super) fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    /// The next instant that is known ahead, s: with the time of the flight, with a segment of a schedule, where a condition on the time is met,
+    /// where the propellant is spent, or where a canopy begins to fill or is full.
+    fn next_instant(&self) -> f64 {
         let mut end = self.scenario.case().stop.time;
         end = end.min(next_boundary_in_time(self.motion.forces()));
         if !self.conditions.is_empty() {
@@ -137,8 +151,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// Takes a step.
     pub(super) fn advance(&mut self) -> Result<Step<N>, SimulationError> {
-        let horizon = self.horizon();
-        self.integrator.advance(&self.motion, horizon).map_err(|error| self.failure(error))
+        self.integrator.advance(&self.motion, self.horizon).map_err(|error| self.failure(error))
     }
 
     /// Cuts a step at the first place that a detector locates in it, shows what is left to `observe`, and applies the changes at its end;
@@ -148,7 +161,6 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         step: &Step<N>,
         observe: &mut impl FnMut(&StepView<F, N>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
-        let horizon = self.horizon();
         let Self { motion, integrator, stop_altitude, model_boundaries, conditions, evaluations, log, .. } = self;
         let mut view = StepView::new(motion, step, log.phases.len());
         // Each detector sees what the ones before have left of the step, so that the last that cuts has the first place. The stop altitude
@@ -182,8 +194,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             (None, None, Some(())) => ending = Some(self.ground()),
             (None, None, None) => {}
         }
-        let may_change = is_cut || halted || self.conditions.is_due() || self.time >= horizon;
-        let end = if may_change { self.apply_changes(crossing, ending, false)? } else { None };
+        let may_change = is_cut || halted || self.conditions.is_due() || self.time >= self.horizon;
+        let mut end = None;
+        if may_change {
+            end = self.apply_changes(crossing, ending, false)?;
+            self.horizon = self.next_instant();
+        }
         if end.is_none() {
             self.look_ahead();
         }
@@ -442,6 +458,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         self.log.phases.push(phase);
         regular(&self.motion, self.time, &self.state)?;
         enter_mode_of(&mut self.motion, self.time, &self.state)
+    }
+
+    /// The number of the present phase and its mode, on which the forces depend.
+    pub(super) fn phase_and_mode(&self) -> (usize, ModelMode) {
+        (self.log.phases.len(), self.motion.forces().mode())
     }
 
     /// Whether the vehicle is held on the ground.

@@ -2,7 +2,7 @@
 
 use super::flight::Flight;
 use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, extremes};
-use crate::integrate::{AnyStep, LaneSteps, Step, System, lane_instructions};
+use crate::integrate::{AnyStep, LaneSteps, Step, System};
 use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Forces, Formulation};
 use crate::scalar::Lanes;
@@ -71,11 +71,13 @@ impl<'a, T> Outcomes<'a, T> {
         let of_layout: Vec<usize> =
             (0..self.scenarios.len()).filter(|index| of_layout(&self.scenarios[*index])).collect();
         // Two would not be faster together.
-        if of_layout.len() <= 2 || lane_instructions().is_none() {
+        if of_layout.len() <= 2 {
             return;
         }
+        let Some(steps) = LaneSteps::new() else { return };
         let mut scheduler = Scheduler {
             outcomes: self,
+            steps,
             coming: of_layout.into_iter(),
             interrupt,
             observer,
@@ -103,6 +105,7 @@ impl<'a, T> Outcomes<'a, T> {
 /// Which flights fly in which lanes: those that are under way, and scenarios that are to come.
 struct Scheduler<'a, 'b, T, M, O, const N: usize> {
     outcomes: &'b mut Outcomes<'a, T>,
+    steps: LaneSteps<N, LANES>,
     coming: std::vec::IntoIter<usize>,
     interrupt: &'a dyn Interrupt,
     observer: M,
@@ -222,7 +225,6 @@ where
         let first = waiting.first().and_then(|place| self.under_way[*place].as_ref());
         let Some(like) = first.map(|first| first.flight.motion.forces().clone()) else { return };
         let mut system = Cartesian(like.in_lanes::<LANES>());
-        let mut steps = LaneSteps::<N, LANES>::default();
         let mut lanes = [None; LANES];
         loop {
             for (lane, place) in lanes.iter_mut().enumerate() {
@@ -239,7 +241,7 @@ where
                     && let Some(Flying { flight, .. }) = &mut self.under_way[at]
                 {
                     let end = flight.horizon();
-                    if let Err(error) = steps.load(lane, &mut flight.integrator, &flight.motion, end) {
+                    if let Err(error) = self.steps.load(lane, &mut flight.integrator, &flight.motion, end) {
                         let error = flight.failure(error);
                         self.goes_on(at, Err(error));
                         *place = None;
@@ -252,21 +254,23 @@ where
                 }
                 continue;
             }
-            steps.attempt(&system);
+            self.steps.attempt(&system);
             for (lane, place) in lanes.iter_mut().enumerate() {
                 let Some(at) = *place else { continue };
                 let Some(Flying { flight, observer, .. }) = &mut self.under_way[at] else { continue };
-                let Some(step) = steps.judge(lane, &mut flight.integrator, &flight.motion) else { continue };
+                let Some(step) = self.steps.judge(lane, &mut flight.integrator, &flight.motion) else { continue };
+                let before = flight.phase_and_mode();
                 let passed = flight.pass(&step, &mut |view| observer.observe(view));
                 let goes_on = self.goes_on(at, passed);
                 let Some(Flying { flight, .. }) = self.under_way[at].as_ref().filter(|_| goes_on) else {
                     *place = None;
                     continue;
                 };
-                if flight.integrator.is_stiff() || !flight.motion.forces().are_alike(&like) {
+                let is_changed = flight.phase_and_mode() != before;
+                if flight.integrator.is_stiff() || is_changed && !flight.motion.forces().are_alike(&like) {
                     *place = None;
                     self.wait(at);
-                } else {
+                } else if is_changed {
                     system.0.put(lane, flight.motion.forces());
                 }
             }

@@ -5,8 +5,9 @@ use num_dual::Dual64;
 use super::detector::Detector;
 use super::step_view::StepView;
 use crate::control::Against;
-use crate::integrate::event::{self, PredictedCrossing};
+use crate::integrate::event::{self, Inside, PredictedCrossing};
 use crate::motion::{Forces, Formulation, StateRate, Switch, SwitchQuantity};
+use crate::scalar::Scalar;
 
 /// Detects where a flight leaves the segments on which the present formulas hold.
 ///
@@ -39,7 +40,7 @@ struct Boundary {
 
 impl Boundary {
     /// How far a quantity is inside the segment.
-    fn inside(self, quantity: Dual64) -> Dual64 {
+    fn inside<S: Scalar>(self, quantity: S) -> S {
         (quantity - self.value) * self.side + self.margin
     }
 }
@@ -85,11 +86,11 @@ impl Detector for ModelBoundaryDetector {
         for switch in forces.switches().iter() {
             let [start, end] = [&self.readings, ends].map(|readings| readings[switch as usize]);
             for boundary in boundaries_around(forces, switch).into_iter().flatten() {
-                let inside = |part| boundary.inside(read_inside(switch, step, part));
+                let inside = ReadingInside { switch, boundary, step };
                 let [start, end] = [start, end].map(|quantity| boundary.inside(quantity));
                 let length = step.length();
                 if event::seems_to_fall(start, end, length)
-                    && let Some(part) = event::first_fall(start, end, length, inside)
+                    && let Some(part) = event::first_fall(start, end, length, &inside)
                     && first.is_none_or(|(least, _)| part < least)
                 {
                     first = Some((part, BoundaryCrossing { switch, boundary }));
@@ -149,14 +150,41 @@ fn read(forces: &Forces, now: &StateRate) -> [Dual64; Switch::ALL.len()] {
     forces.readings(now.time, &now.state)
 }
 
-/// The quantity of one inside a step.
-fn read_inside<F: Formulation<N>, const N: usize>(switch: Switch, step: &StepView<F, N>, part: f64) -> Dual64 {
-    let forces = step.motion.forces();
-    match forces.boundaries(switch) {
-        Some((SwitchQuantity::Along(Against::Altitude), _)) => {
+/// How far the quantity of a switch is inside its segment, in a step.
+struct ReadingInside<'a, 'b, F, const N: usize> {
+    switch: Switch,
+    boundary: Boundary,
+    step: &'a StepView<'b, F, N>,
+}
+
+impl<F: Formulation<N>, const N: usize> ReadingInside<'_, '_, F, N> {
+    /// Whether it takes the position alone.
+    fn is_altitude(&self) -> bool {
+        let boundaries = self.step.motion.forces().boundaries(self.switch);
+        matches!(boundaries, Some((SwitchQuantity::Along(Against::Altitude), _)))
+    }
+}
+
+impl<F: Formulation<N>, const N: usize> Inside for ReadingInside<'_, '_, F, N> {
+    fn at(&self, part: f64) -> Dual64 {
+        let Self { switch, boundary, step } = self;
+        let forces = step.motion.forces();
+        boundary.inside(if self.is_altitude() {
             forces.planet().shape.altitude(&step.position_inside(part))
-        }
-        _ => read_one(forces, switch, &step.inside(part)),
+        } else {
+            read_one(forces, *switch, &step.inside(part))
+        })
+    }
+
+    fn value_at(&self, part: f64) -> f64 {
+        let Self { switch, boundary, step } = self;
+        let forces = step.motion.forces();
+        let StateRate { time, state } = step.state_inside(part);
+        boundary.inside(if self.is_altitude() {
+            forces.planet().shape.altitude(&state.position)
+        } else {
+            forces.reading(*switch, time, &state)
+        })
     }
 }
 

@@ -85,7 +85,7 @@ impl PeakTracker {
             let after = outside_cone(forces, &end);
             self.cone = Some(after);
             let inside = |part| outside_cone(forces, &view.inside(part));
-            if let Some(part) = event::first_fall(before, after, view.step.length(), inside) {
+            if let Some(part) = event::first_fall(before, after, view.step.length(), &inside) {
                 self.faded = true;
                 self.warnings.push(Warning::LiftFadedNearVertical { time: time(part) });
             }
@@ -242,7 +242,8 @@ fn raise(
     for pair in looks.windows(2) {
         let [(from, start), (to, end)] = [&pair[0], &pair[1]];
         let between = |part: f64| from + part * (to - from);
-        if let Some(part) = event::maximum(quantity(start), quantity(end), |part| quantity(&inside(between(part)))) {
+        let between_looks = |part: f64| quantity(&inside(between(part)));
+        if let Some(part) = event::maximum(quantity(start), quantity(end), &between_looks) {
             let part = between(part);
             rise(part, &inside(part));
         }

@@ -80,6 +80,11 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
         position.zip_map(&velocity, Dual64::new)
     }
 
+    /// The state at the given part of the step, without its rates.
+    pub(super) fn state_inside(&self, part: f64) -> StateRate<f64> {
+        StateRate::at::<F, N>(self.step.time(part), &self.interpolant().state(part))
+    }
+
     /// The state at the given part of the step, moving along the dense output: what rises and falls by these rates does so along the
     /// states that the dense output has, whatever its error.
     pub(super) fn on_dense_output(&self, part: f64) -> StateRate {
@@ -102,11 +107,8 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
 
     /// What an event may wait for, at the end; ranges from the beginning of `track`.
     pub(super) fn quantity_at_end(&self, quantity: Quantity, track: &GreatCircle<Dual64>) -> Dual64 {
-        let forces = self.motion.forces();
-        *self.quantities_at_end[quantity as usize].get_or_init(|| {
-            let of_loads = self.loads_at_end().quantity(quantity, forces.heating());
-            of_loads.unwrap_or_else(|| forces.quantity(quantity, &self.end(), track))
-        })
+        let read = || self.motion.forces().quantity_with(quantity, &self.end(), track, &self.loads_at_end);
+        *self.quantities_at_end[quantity as usize].get_or_init(read)
     }
 
     /// The quantities of the switches, at the end.

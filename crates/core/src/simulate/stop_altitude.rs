@@ -5,9 +5,10 @@ use num_dual::Dual64;
 
 use super::detector::Detector;
 use super::step_view::StepView;
-use crate::integrate::event::{self, PredictedCrossing};
+use crate::integrate::event::{self, Inside, PredictedCrossing};
 use crate::motion::{Forces, Formulation, StateRate};
 use crate::planet::Shape;
+use crate::scalar::Scalar;
 
 /// Detects the fall to the stop altitude.
 #[derive(Clone, Copy)]
@@ -49,8 +50,24 @@ impl StopAltitudeDetector {
         self.height_of(&now.state.position)
     }
 
-    fn height_of(&self, position: &Vector3<Dual64>) -> Dual64 {
+    fn height_of<S: Scalar>(&self, position: &Vector3<S>) -> S {
         self.shape.altitude(position) - self.stop_altitude
+    }
+}
+
+/// The height above the stop altitude in a step, m.
+struct HeightInside<'a, 'b, F, const N: usize> {
+    detector: &'a StopAltitudeDetector,
+    step: &'a StepView<'b, F, N>,
+}
+
+impl<F: Formulation<N>, const N: usize> Inside for HeightInside<'_, '_, F, N> {
+    fn at(&self, part: f64) -> Dual64 {
+        self.detector.height_of(&self.step.position_inside(part))
+    }
+
+    fn value_at(&self, part: f64) -> f64 {
+        self.detector.height_of(&self.step.state_inside(part).state.position)
     }
 }
 
@@ -60,8 +77,7 @@ impl Detector for StopAltitudeDetector {
     /// The first crossing downwards, a dip inside the step included.
     fn locate<F: Formulation<N>, const N: usize>(&self, step: &StepView<F, N>) -> Option<(f64, ())> {
         let end = self.height_at(&step.end());
-        let inside = |part| self.height_of(&step.position_inside(part));
-        let part = event::first_fall(self.height, end, step.length(), inside)?;
+        let part = event::first_fall(self.height, end, step.length(), &HeightInside { detector: self, step })?;
         Some((part, ()))
     }
 
