@@ -81,7 +81,7 @@ proptest! {
         let whole = simulate(&scenario, &NEVER).unwrap();
         let altitude = |point: &FlightPoint| Some(point.loads.altitude);
         let [kept, all] = [Extent::Extremes, Extent::Whole].map(|extent| SearchFlight::fly(&scenario, extent, &NEVER).unwrap());
-        let point = |flown: &SearchFlight, at| flown.point(at, &altitude, &NEVER).unwrap();
+        let point = |flown: &SearchFlight, at| flown.vehicle().point(at, &altitude, &NEVER).unwrap();
         prop_assert_eq!(point(&all, Moment::End).unwrap(), whole.last());
         prop_assert_eq!(point(&all, Moment::Start).unwrap(), whole.initial());
         let time = part * whole.end_time();

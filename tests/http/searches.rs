@@ -190,6 +190,55 @@ async fn the_boundary_values_of_target_have_an_ascending_and_a_descending_soluti
     assert!(answer["reach"][3]["greatest"].as_f64().unwrap() < 12_000.0);
 }
 
+/// A launch whose first stage is to come down where that of another tilt does.
+#[tokio::test]
+async fn a_requirement_may_be_on_the_flight_of_a_body() {
+    let service = Service::new();
+    let launcher: Value = serde_json::from_str(include_str!("../../openapi/examples/launcher.json")).unwrap();
+    let other = good_answer(&service, "/simulate", &with(&launcher, "/events/1/then/tilt/angle", 1.03)).await;
+    let bodies = other["bodies"].as_array().unwrap();
+    let stage = bodies.iter().find(|body| body["name"] == "first stage").unwrap();
+    let range = stage["final_state"]["ground_range"].as_f64().unwrap();
+    let load = stage["peaks"]["load_factor"]["value"].as_f64().unwrap();
+    let ends = json!({"termination": ["surface_impact"], "body": "first stage"});
+    let request = with_all(
+        &launcher,
+        [
+            ("/vary", json!([{"pointer": "/events/1/then/tilt/angle", "between": [1, 1.036]}])),
+            (
+                "/achieve",
+                json!([
+                    {"quantity": "ground_range", "body": "first stage", "equals": range, "tolerance": 0.1},
+                    {"termination": ["condition", "surface_impact"]},
+                    ends,
+                ]),
+            ),
+        ],
+    );
+    let answer = good_answer(&service, "/target", &request).await;
+    assert_eq!(answer["outcome"], "reached", "{answer}");
+    let tilt = answer["solutions"][0]["values"][0].as_f64().unwrap();
+    assert!((tilt - 1.03).abs() < 1e-5, "{tilt}");
+    // A limit on its loads, where the tilt at which they are just kept is known.
+    let limits = json!([
+        {"quantity": "load_factor", "at": "peak", "body": "first stage", "at_most": load},
+        ends,
+    ]);
+    let vary = json!({"pointer": "/events/1/then/tilt/angle", "between": [1, 1.036]});
+    let corridor = with_all(&launcher, [("/vary", vary), ("/limits", limits), ("/resolution", json!(1e-5))]);
+    let answer = good_answer(&service, "/corridor", &corridor).await;
+    let band = &answer["bands"][0];
+    let edges = [band["from"].as_f64().unwrap(), band["to"].as_f64().unwrap()];
+    assert!(edges.iter().any(|edge| (edge - 1.03).abs() < 3e-5), "{edges:?}");
+    // What never leaves has no flight.
+    let never = with(&request, "/events/2/when/delay", 9000);
+    let answer = good_answer(&service, "/target", &never).await;
+    assert_eq!((&answer["outcome"], &answer["reach"]), (&json!("not_reached"), &json!([null])));
+    let faulty = with(&request, "/achieve/0/body", "booster");
+    let detail = "must be the name of a body that an event of the case separates, got \"booster\"";
+    Steady::new().await.refused_at("/target", &faulty, &[("/achieve/0/body", detail)]).await;
+}
+
 #[tokio::test]
 async fn an_apoapsis_is_followed_through_the_parabola() {
     let service = Service::new();

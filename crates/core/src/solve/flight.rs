@@ -4,7 +4,7 @@ use crate::integrate::Statistics;
 use crate::interrupt::Interrupt;
 use crate::scenario::Scenario;
 use crate::sensitivity::{Moment, point_at};
-use crate::simulate::{SimulationError, extremes, simulate};
+use crate::simulate::{BodyError, Flights, SimulationError, extremes, simulate, simulate_with_bodies};
 use crate::trajectory::{Extremes, FlightPoint, Peaks, Termination, Trajectory};
 
 /// What a search asks of its flights.
@@ -14,6 +14,8 @@ pub enum Extent {
     Extremes,
     /// Their states at any time, and what is measured along the ground track.
     Whole,
+    /// The same, also of the bodies that leave the vehicle.
+    WithBodies,
 }
 
 /// A finished flight.
@@ -23,33 +25,71 @@ pub enum SearchFlight {
     Extremes(Extremes),
     /// All of it.
     Whole(Trajectory),
+    /// All of it, and the flights of the bodies that left the vehicle.
+    WithBodies(Flights),
+}
+
+/// The flight of the vehicle or of a body, as far as the search has kept it.
+#[derive(Clone, Copy, Debug)]
+pub enum KeptFlight<'a> {
+    /// Its extremes.
+    Extremes(&'a Extremes),
+    /// All of it.
+    Whole(&'a Trajectory),
 }
 
 impl SearchFlight {
     /// Flies a scenario.
     ///
     /// # Errors
-    /// Those of [`simulate`].
-    pub fn fly(scenario: &Scenario, extent: Extent, interrupt: &dyn Interrupt) -> Result<Self, SimulationError> {
-        match extent {
-            Extent::Extremes => extremes(scenario, interrupt).map(Self::Extremes),
-            Extent::Whole => simulate(scenario, interrupt).map(Self::Whole),
-        }
+    /// Those of [`simulate_with_bodies`].
+    pub fn fly(scenario: &Scenario, extent: Extent, interrupt: &dyn Interrupt) -> Result<Self, BodyError> {
+        Ok(match extent {
+            Extent::Extremes => Self::Extremes(extremes(scenario, interrupt)?),
+            Extent::Whole => Self::Whole(simulate(scenario, interrupt)?),
+            Extent::WithBodies => Self::WithBodies(simulate_with_bodies(scenario, interrupt)?),
+        })
     }
 
-    /// How the flight ended.
-    pub fn termination(&self) -> Termination {
+    /// The flight of the vehicle.
+    pub fn vehicle(&self) -> KeptFlight<'_> {
         match self {
-            Self::Extremes(flight) => flight.termination(),
-            Self::Whole(flight) => flight.termination(),
+            Self::Extremes(flight) => KeptFlight::Extremes(flight),
+            Self::Whole(flight) => KeptFlight::Whole(flight),
+            Self::WithBodies(flights) => KeptFlight::Whole(&flights.vehicle),
         }
     }
 
-    /// What the integration cost.
+    /// The flight of a body, by the places of event and separation of it, after those of the bodies from which it comes; none where it did not leave,
+    /// or bodies were not flown.
+    pub fn body(&self, path: &[(usize, usize)]) -> Option<KeptFlight<'_>> {
+        let Self::WithBodies(flights) = self else { return None };
+        let place = (0..flights.bodies.len()).find(|place| flights.path(*place) == path)?;
+        Some(KeptFlight::Whole(&flights.bodies[place].trajectory))
+    }
+
+    /// What the integration cost, that of all bodies included.
     pub fn statistics(&self) -> Statistics {
         match self {
             Self::Extremes(flight) => flight.statistics(),
             Self::Whole(flight) => flight.statistics(),
+            Self::WithBodies(flights) => {
+                flights.all().map(Trajectory::statistics).fold(Statistics::default(), |sum, one| Statistics {
+                    steps: sum.steps + one.steps,
+                    rejected_steps: sum.rejected_steps + one.rejected_steps,
+                    evaluations: sum.evaluations + one.evaluations,
+                })
+            }
+        }
+    }
+}
+
+impl KeptFlight<'_> {
+    /// How the flight ended.
+    pub fn termination(self) -> Termination {
+        match self {
+            Self::Extremes(flight) => flight.termination(),
+            Self::Whole(flight) => flight.termination(),
         }
     }
 
@@ -63,7 +103,7 @@ impl SearchFlight {
 
     /// How far along the initial great circle the flight ended, within half a turn either way, and how far to the right of it, m on the sphere
     /// with the equatorial radius; none where the flight starts vertically or at rest.
-    pub fn range_of_end(&self) -> Option<[f64; 2]> {
+    pub fn range_of_end(self) -> Option<[f64; 2]> {
         match self {
             Self::Extremes(flight) => flight.range_of_end(),
             Self::Whole(flight) => flight.range_of_end(),
@@ -76,7 +116,7 @@ impl SearchFlight {
     /// # Errors
     /// When the flag is raised.
     pub fn point(
-        &self,
+        self,
         at: Moment,
         value: &dyn Fn(&FlightPoint) -> Option<f64>,
         interrupt: &dyn Interrupt,

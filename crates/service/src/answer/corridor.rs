@@ -60,11 +60,11 @@ fn judge(
             continue;
         };
         let (known, flown) = *flown;
-        sample.ends.push(Some(flown.termination()));
+        sample.ends.push(Some(flown.vehicle().termination()));
         for (index, limit) in limits {
             match limit {
-                Limit::Ends(requirement) => {
-                    let is_kept = requirement.admits(flown.termination());
+                Limit::Ends(end) => {
+                    let is_kept = end.is_met(&flown);
                     sample.margins[*index] = Some(if is_kept { 1.0 } else { -1.0 });
                 }
                 Limit::Number(number) => {

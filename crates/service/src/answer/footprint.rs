@@ -57,6 +57,6 @@ pub fn footprint(
 fn downrange(asked: &mut FootprintRequest, flights: &mut Flights, interrupt: &dyn Interrupt) -> Result<f64, ApiError> {
     let own: Vec<_> = asked.case.varied().iter().map(|number| number.start).collect();
     let Flight::Finished(flown) = flights.fly(&mut asked.case, &own, Extent::Whole)? else { return Ok(0.0) };
-    let end = flown.1.point(Moment::End, &|_| None, interrupt)?;
+    let end = flown.1.vehicle().point(Moment::End, &|_| None, interrupt)?;
     Ok(end.and_then(|point| point.downrange).unwrap_or_default())
 }

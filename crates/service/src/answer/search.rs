@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use reentry::Interrupt;
 use reentry::integrate::Statistics;
-use reentry::simulate::{SimulationError, simulate};
+use reentry::simulate::{BodyError, SimulationError, simulate};
 use reentry::solve::flight::{Extent, SearchFlight};
 
 use super::Work;
@@ -72,7 +72,9 @@ impl<'a> Flights<'a> {
                 self.took(flown.statistics());
                 Ok(Flight::Finished(Box::new((known, flown))))
             }
-            Err(SimulationError::Interrupted { .. }) if !self.interrupt.is_raised() => Ok(Flight::OutOfTime),
+            Err(BodyError { error: SimulationError::Interrupted { .. }, .. }) if !self.interrupt.is_raised() => {
+                Ok(Flight::OutOfTime)
+            }
             Err(error) => self.failed(error).map(|()| Flight::Failed),
         }
     }
@@ -87,8 +89,8 @@ impl<'a> Flights<'a> {
     ///
     /// # Errors
     /// When that is not for a reason of its own.
-    fn failed(&mut self, error: SimulationError) -> Result<(), ApiError> {
-        match error {
+    fn failed(&mut self, error: BodyError) -> Result<(), ApiError> {
+        match error.error {
             SimulationError::Interrupted { .. } | SimulationError::NoRoom { .. } => Err(error.into()),
             _ => {
                 self.fail(ApiError::from(error).problem().kind);
@@ -110,7 +112,7 @@ impl<'a> Flights<'a> {
         };
         let flight = match simulate(&scenario, self.interrupt) {
             Ok(flight) => flight,
-            Err(error) => return self.failed(error).map(|()| None),
+            Err(error) => return self.failed(error.into()).map(|()| None),
         };
         if !flight.measure_ground_track(self.interrupt) {
             return Err(ApiError::Interrupted);

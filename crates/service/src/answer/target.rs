@@ -30,10 +30,9 @@ pub fn target(tree: Value, until: Option<Instant>, interrupt: &dyn Interrupt) ->
             }
         };
         let (known, flown) = *flown;
-        let end = flown.termination();
         let mut outcome = Outcome {
-            end: Some(end),
-            counts: asked.counts(end),
+            end: Some(flown.vehicle().termination()),
+            counts: asked.counts(&flown),
             searched: Vec::with_capacity(goals.len()),
             shown: Vec::with_capacity(goals.len()),
         };

@@ -11,7 +11,7 @@ use super::AngleUnit;
 use super::description::{self, Object};
 use super::numbers::Numbers;
 use super::reader::Fault;
-use super::requirements::{MOST_LIMITS, RequestedRequirement, WantedNumber, limit};
+use super::requirements::{MOST_LIMITS, RequestedRequirement, WantedEnd, WantedNumber, limit};
 use super::scenario::{SimulateRequest, case};
 use super::schema::names;
 use super::search::{CaseOfSearch, FlightSummary, FlightsOfSearch, without_analyses};
@@ -112,7 +112,7 @@ pub enum Limit {
     /// On a number.
     Number(WantedNumber),
     /// On how it ends.
-    Ends(RequestedRequirement),
+    Ends(WantedEnd),
 }
 
 impl CorridorRequest {
@@ -168,7 +168,12 @@ fn groups(limits: &[AskedLimit], request: &SimulateRequest, numbers: &Numbers, m
                 group.extent = group.extent.max(number.extent());
                 group.limits.push((index, Limit::Number(number)));
             }
-            None => group.limits.push((index, Limit::Ends(limit.requirement.clone()))),
+            None => {
+                if let Some(end) = limit.requirement.end(&request.events) {
+                    group.extent = group.extent.max(end.extent());
+                    group.limits.push((index, Limit::Ends(end)));
+                }
+            }
         }
     }
     groups.into_iter().map(|(_, group)| group).collect()

@@ -21,7 +21,7 @@ use super::columns::AvailableQuantities;
 use super::description::{self, Object};
 use super::outputs::ground_point;
 use super::reader::Fault;
-use super::requirements::{MOST_LIMITS, RequestedRequirement, WantedNumber, limit};
+use super::requirements::{MOST_LIMITS, RequestedRequirement, WantedEnd, WantedNumber, limit};
 use super::scenario::{SimulateRequest, case};
 use super::schema::names;
 use super::search::{CaseOfSearch, FlightsOfSearch, classes, without_analyses};
@@ -94,7 +94,7 @@ pub struct FootprintRequest {
     /// The limits on numbers.
     numbers: Vec<WantedNumber>,
     /// The limits on how flights end.
-    ends: Vec<RequestedRequirement>,
+    ends: Vec<WantedEnd>,
     /// The extent of the search.
     pub options: Options,
     /// The request with every default filled in, if it asks for it.
@@ -125,12 +125,13 @@ impl FootprintRequest {
             requirement.numbers(request.angle_unit, &request.events, &request.planet.core)
         };
         let numbers: Vec<_> = asked.limits.iter().flat_map(numbers).collect();
-        let ends = |requirement: &RequestedRequirement| matches!(requirement, RequestedRequirement::Ends(_));
+        let ends: Vec<_> = asked.limits.iter().filter_map(|requirement| requirement.end(&request.events)).collect();
+        let extents = numbers.iter().map(WantedNumber::extent).chain(ends.iter().map(WantedEnd::extent));
         Ok(Self {
             case: MovingCase::new(case, varied),
-            extent: numbers.iter().map(WantedNumber::extent).max().unwrap_or(Extent::Extremes),
+            extent: extents.max().unwrap_or(Extent::Extremes),
             numbers,
-            ends: asked.limits.into_iter().filter(ends).collect(),
+            ends,
             options: asked.options,
             echo: request.echo.then_some(tree),
             request,
@@ -153,15 +154,16 @@ impl FootprintRequest {
         near: f64,
         interrupt: &dyn Interrupt,
     ) -> Result<Outcome, SimulationError> {
-        let end = flown.termination();
         let mut margin = f64::INFINITY;
         for number in &self.numbers {
             let reading = number.reading(flown, known, interrupt)?;
             margin = margin.min(reading.searched.map_or(f64::NEG_INFINITY, |value| number.searched().margin(value)));
         }
-        if !self.ends.iter().all(|requirement| requirement.admits(end)) {
+        if !self.ends.iter().all(|end| end.is_met(flown)) {
             margin = f64::NEG_INFINITY;
         }
+        let flown = flown.vehicle();
+        let end = flown.termination();
         let is_down = !matches!(end, CoreTermination::TimeLimit | CoreTermination::AtmosphereExit);
         let point = if is_down { flown.point(Moment::End, &|_| None, interrupt)? } else { None };
         let turn = std::f64::consts::TAU * known.planet.equatorial_radius();

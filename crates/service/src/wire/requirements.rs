@@ -4,7 +4,7 @@ use reentry::coordinates::{OrbitShape, Site};
 use reentry::planet::Planet;
 use reentry::scenario::Bound;
 use reentry::sensitivity::Moment;
-use reentry::solve::flight::{Extent, SearchFlight};
+use reentry::solve::flight::{Extent, KeptFlight, SearchFlight};
 use reentry::solve::requirement::{Requirement, Wanted};
 use reentry::trajectory::{FlightPoint, Peak, Peaks, Termination as CoreTermination};
 use reentry::{Interrupt, simulate::SimulationError};
@@ -15,12 +15,21 @@ use super::description::{Object, Words, word};
 use super::events::Event;
 use super::outputs::{At, FlightOutput, at_site, ground_point, place_of, quantity};
 use super::reader::Fault;
+use super::shown::quoted;
 use super::trajectory::Termination;
 
 /// What is wanted of a flight.
 #[derive(Clone, Debug)]
-pub enum RequestedRequirement {
-    /// Of a quantity at a moment, or of the distance from a site.
+pub struct RequestedRequirement {
+    /// The name of the body of whose flight it is wanted; none of the vehicle.
+    body: Option<String>,
+    aspect: Aspect,
+}
+
+/// What of a flight a requirement is on.
+#[derive(Clone, Debug)]
+enum Aspect {
+    /// A quantity at a moment, or the distance from a site.
     Number {
         /// What is taken from the flight.
         output: FlightOutput,
@@ -32,6 +41,9 @@ pub enum RequestedRequirement {
     /// That the flight ends in one of these ways.
     Ends(Vec<Termination>),
 }
+
+/// A body of a request: the places of event and separation of it, after those of the bodies from which it comes.
+type BodyPath = Vec<(usize, usize)>;
 
 /// The words for how a flight ends.
 pub const TERMINATIONS: Words<Termination> = Words {
@@ -61,8 +73,18 @@ pub(super) fn limit(object: &mut Object) -> Option<RequestedRequirement> {
 fn limited_quantity(object: &mut Object) -> Option<RequestedRequirement> {
     let output = quantity(object);
     let wanted = range(object);
+    let body = body(object);
     object.exactly_one(&["at_least", "at_most", "between"])?;
-    Some(RequestedRequirement::Number { output: output?, wanted: wanted?, tolerance: None })
+    Some(RequestedRequirement { body, aspect: Aspect::Number { output: output?, wanted: wanted?, tolerance: None } })
+}
+
+/// Of whose flight a requirement is.
+fn body(object: &mut Object) -> Option<String> {
+    object
+        .field("body", "Body")
+        .doc("Name of a separated body of whose flight this is; by default that of the vehicle.")
+        .optional()
+        .text()
 }
 
 /// One of the ways to give a range.
@@ -94,7 +116,11 @@ fn near_site(object: &mut Object) -> Option<RequestedRequirement> {
         .doc("Greatest distance of the end point from the site, m, along the great circle.")
         .unit("m")
         .number(Bound::POSITIVE);
-    Some(RequestedRequirement::Number { output: output?, wanted: Wanted::AtMost(within?), tolerance: None })
+    let body = body(object);
+    Some(RequestedRequirement {
+        body,
+        aspect: Aspect::Number { output: output?, wanted: Wanted::AtMost(within?), tolerance: None },
+    })
 }
 
 /// A goal: a value or a range.
@@ -114,8 +140,10 @@ fn wanted_quantity(object: &mut Object) -> Option<RequestedRequirement> {
         object.field("equals", "Equals").doc("Value, in the unit of the quantity.").optional().number(Bound::FINITE);
     let range = range(object);
     let tolerance = tolerance(object);
+    let body = body(object);
     object.exactly_one(&["equals", "at_least", "at_most", "between"])?;
-    Some(RequestedRequirement::Number { output: output?, wanted: equals.map(Wanted::Equals).or(range)?, tolerance })
+    let wanted = equals.map(Wanted::Equals).or(range)?;
+    Some(RequestedRequirement { body, aspect: Aspect::Number { output: output?, wanted, tolerance } })
 }
 
 fn at_or_near_site(object: &mut Object) -> Option<RequestedRequirement> {
@@ -127,11 +155,9 @@ fn at_or_near_site(object: &mut Object) -> Option<RequestedRequirement> {
         .optional()
         .number(Bound::POSITIVE);
     let tolerance = tolerance(object);
-    Some(RequestedRequirement::Number {
-        output: output?,
-        wanted: within.map_or(Wanted::Equals(0.0), Wanted::AtMost),
-        tolerance,
-    })
+    let body = body(object);
+    let wanted = within.map_or(Wanted::Equals(0.0), Wanted::AtMost);
+    Some(RequestedRequirement { body, aspect: Aspect::Number { output: output?, wanted, tolerance } })
 }
 
 fn tolerance(object: &mut Object) -> Option<f64> {
@@ -147,27 +173,47 @@ fn tolerance(object: &mut Object) -> Option<f64> {
 
 fn ends(object: &mut Object) -> Option<RequestedRequirement> {
     let ends = object.field("termination", "Termination").doc("How the flight must end.").several(&TERMINATIONS);
-    Some(RequestedRequirement::Ends(ends?))
+    let body = body(object);
+    Some(RequestedRequirement { body, aspect: Aspect::Ends(ends?) })
 }
 
 impl RequestedRequirement {
     /// What is wrong with it, given at a pointer, in a request of which so much is known.
     pub(super) fn fault(&self, pointer: &str, known: AvailableQuantities, events: &[Event]) -> Option<Fault> {
-        match self {
-            Self::Number { output, .. } => output.fault(pointer, known, events),
-            Self::Ends(_) => None,
+        let Some((_, events)) = self.events(events) else {
+            let got = quoted(self.body.as_deref().unwrap_or_default());
+            let detail = format!("must be the name of a body that an event of the case separates, got {got}");
+            return Some(Fault::new(format!("{pointer}/body"), detail));
+        };
+        match &self.aspect {
+            Aspect::Number { output, .. } => output.fault(pointer, known, events),
+            Aspect::Ends(_) => None,
         }
+    }
+
+    /// The body, and the events of its flight, in a request with these events; none where no body has the name.
+    fn events<'a>(&self, events: &'a [Event]) -> Option<(Option<BodyPath>, &'a [Event])> {
+        let Some(name) = &self.body else { return Some((None, events)) };
+        body_of_name(name, events, &[]).map(|(path, events)| (Some(path), events))
+    }
+
+    /// Whether it is on how a flight ends.
+    pub fn is_on_end(&self) -> bool {
+        matches!(self.aspect, Aspect::Ends(_))
     }
 
     /// The numbers of a flight on which it is, with what each is to be.
     pub fn numbers(&self, unit: AngleUnit, events: &[Event], planet: &Planet) -> Vec<WantedNumber> {
-        let Self::Number { output, wanted, tolerance } = self else { return Vec::new() };
+        let (Aspect::Number { output, wanted, tolerance }, Some((body, events))) = (&self.aspect, self.events(events))
+        else {
+            return Vec::new();
+        };
         let number = |source: Source, at: Moment, wanted: Wanted, natural: Option<f64>, turn: Option<f64>| {
             let magnitude = magnitude(wanted);
             let size = if magnitude > 0.0 { magnitude } else { natural.unwrap_or(1.0) };
             let tolerance = tolerance.unwrap_or(SMALL * natural.unwrap_or(size));
             let requirement = Requirement { wanted, turn, tolerance, size };
-            WantedNumber { shown: requirement, source, at, unit }
+            WantedNumber { shown: requirement, body: body.clone(), source, at, unit }
         };
         let radius = planet.equatorial_radius();
         match output {
@@ -196,13 +242,67 @@ impl RequestedRequirement {
         }
     }
 
-    /// Whether a flight that ends so is one that is wanted.
-    pub fn admits(&self, termination: CoreTermination) -> bool {
-        match self {
-            Self::Number { .. } => true,
-            Self::Ends(ends) => ends.contains(&Termination::from(termination)),
+    /// On how a flight ends, in a request with these events; none where it is on numbers.
+    pub fn end(&self, events: &[Event]) -> Option<WantedEnd> {
+        match (&self.aspect, self.events(events)) {
+            (Aspect::Ends(ends), Some((body, _))) => Some(WantedEnd { body, ends: ends.clone() }),
+            _ => None,
         }
     }
+}
+
+/// How the flight of the vehicle or of a body is to end.
+#[derive(Clone, Debug)]
+pub struct WantedEnd {
+    body: Option<BodyPath>,
+    ends: Vec<Termination>,
+}
+
+impl WantedEnd {
+    /// What a flight must keep for it.
+    pub fn extent(&self) -> Extent {
+        if self.body.is_some() { Extent::WithBodies } else { Extent::Extremes }
+    }
+
+    /// Whether a flight ends so; a body that did not leave has no end.
+    pub fn is_met(&self, flown: &SearchFlight) -> bool {
+        flight_of(flown, self.body.as_ref()).is_some_and(|flight| self.admits(flight.termination()))
+    }
+
+    /// Whether it is on the vehicle, and not on a body.
+    pub fn is_of_vehicle(&self) -> bool {
+        self.body.is_none()
+    }
+
+    /// Whether an end is one of those.
+    fn admits(&self, termination: CoreTermination) -> bool {
+        self.ends.contains(&Termination::from(termination))
+    }
+}
+
+/// The flight of the vehicle, or of a body.
+fn flight_of<'a>(flown: &'a SearchFlight, body: Option<&BodyPath>) -> Option<KeptFlight<'a>> {
+    match body {
+        Some(path) => flown.body(path),
+        None => Some(flown.vehicle()),
+    }
+}
+
+/// The body of a name that leaves the vehicle, or a body of a path, by events, or that leaves what leaves it; and its own events.
+fn body_of_name<'a>(name: &str, events: &'a [Event], path: &[(usize, usize)]) -> Option<(BodyPath, &'a [Event])> {
+    let separations = events.iter().enumerate().flat_map(|(event, Event { then, .. })| {
+        then.separated.iter().enumerate().map(move |(place, separated)| ((event, place), separated))
+    });
+    for (place, separated) in separations {
+        let path = [path, &[place]].concat();
+        if separated.name == name {
+            return Some((path, &separated.events));
+        }
+        if let Some(found) = body_of_name(name, &separated.events, &path) {
+            return Some(found);
+        }
+    }
+    None
 }
 
 /// The size of what is wanted.
@@ -257,6 +357,8 @@ fn peak_of(column: &Column) -> Option<fn(&Peaks) -> Option<Peak>> {
 pub struct WantedNumber {
     /// The requirement, on the number as the request has it.
     shown: Requirement,
+    /// Of whose flight it is; none of the vehicle's.
+    body: Option<BodyPath>,
     source: Source,
     at: Moment,
     unit: AngleUnit,
@@ -286,6 +388,9 @@ pub struct Reading {
 impl WantedNumber {
     /// What a flight must keep for it.
     pub fn extent(&self) -> Extent {
+        if self.body.is_some() {
+            return Extent::WithBodies;
+        }
         let is_at_instant = matches!(self.at, Moment::Start | Moment::End | Moment::Event { .. });
         let is_kept = match &self.source {
             Source::Peak(_) => true,
@@ -331,6 +436,8 @@ impl WantedNumber {
         interrupt: &dyn Interrupt,
     ) -> Result<Reading, SimulationError> {
         let both = |number: Option<f64>| Reading { shown: number, searched: number };
+        // A body that did not leave has no numbers.
+        let Some(flown) = flight_of(flown, self.body.as_ref()) else { return Ok(both(None)) };
         let shape = &known.planet.shape;
         let of_column = |column: &'static Column| move |point: &FlightPoint| column.number(point, self.unit, known);
         Ok(match &self.source {

@@ -1,6 +1,6 @@
 //! The request and the answer of `/target`: numbers of a case with which a flight achieves what is wanted.
 
-use reentry::solve::flight::Extent;
+use reentry::solve::flight::{Extent, SearchFlight};
 use reentry::solve::target::{Goal, Iteration, Nearest, Number, Options, Solution, Target};
 use reentry::trajectory::Termination as CoreTermination;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 use super::AngleUnit;
 use super::description::{self, Object};
 use super::reader::Fault;
-use super::requirements::{RequestedRequirement, WantedNumber, goal};
+use super::requirements::{RequestedRequirement, WantedEnd, WantedNumber, goal};
 use super::scenario::{SimulateRequest, case};
 use super::schema::names;
 use super::search::{CaseOfSearch, FailedFlights, FlightSummary, FlightsOfSearch, classes, without_analyses};
@@ -91,7 +91,7 @@ pub struct TargetRequest {
     /// The equations: what is wanted of one number each, with the place of its goal.
     pub equations: Vec<(usize, WantedNumber)>,
     /// How a flight may end.
-    ends: Vec<RequestedRequirement>,
+    ends: Vec<WantedEnd>,
     /// The extent of the search.
     pub options: Options,
     /// The request with every default filled in, if it asks for it.
@@ -112,7 +112,7 @@ impl TargetRequest {
         faults.extend(of_goals.filter_map(|(index, requirement)| {
             requirement.fault(&format!("/achieve/{index}"), known, &request.events)
         }));
-        if asked.achieve.iter().all(|requirement| matches!(requirement, RequestedRequirement::Ends(_))) {
+        if asked.achieve.iter().all(RequestedRequirement::is_on_end) {
             let detail =
                 "must have a goal on a quantity or a site: every flight that ends as wanted achieves the others";
             faults.push(Fault::new("/achieve", detail));
@@ -125,7 +125,9 @@ impl TargetRequest {
             numbers.into_iter().map(move |number| (index, number)).collect::<Vec<_>>()
         };
         let equations: Vec<_> = asked.achieve.iter().enumerate().flat_map(numbers_of).collect();
-        let extent = equations.iter().map(|(_, number)| number.extent()).max().unwrap_or(Extent::Extremes);
+        let ends: Vec<_> = asked.achieve.iter().filter_map(|requirement| requirement.end(&request.events)).collect();
+        let of_numbers = equations.iter().map(|(_, number)| number.extent());
+        let extent = of_numbers.chain(ends.iter().map(WantedEnd::extent)).max().unwrap_or(Extent::Extremes);
         let tolerance = FINE.min(request.solver.relative_tolerance);
         let case = MovingCase::new(case, varied);
         Ok(Self {
@@ -133,11 +135,7 @@ impl TargetRequest {
             case,
             extent,
             equations,
-            ends: asked
-                .achieve
-                .into_iter()
-                .filter(|requirement| matches!(requirement, RequestedRequirement::Ends(_)))
-                .collect(),
+            ends,
             options: asked.options,
             echo: request.echo.then_some(tree),
             request,
@@ -155,12 +153,11 @@ impl TargetRequest {
         self.equations.iter().map(goal).collect()
     }
 
-    /// Whether a flight that ends so counts.
-    pub fn counts(&self, termination: CoreTermination) -> bool {
-        match &self.ends[..] {
-            [] => termination != CoreTermination::TimeLimit,
-            ends => ends.iter().all(|requirement| requirement.admits(termination)),
-        }
+    /// Whether a flight counts, by how it ends: where nothing is said of the vehicle's end, by any but the time limit.
+    pub fn counts(&self, flown: &SearchFlight) -> bool {
+        let is_left_open = !self.ends.iter().any(WantedEnd::is_of_vehicle);
+        let is_over_time = flown.vehicle().termination() == CoreTermination::TimeLimit;
+        self.ends.iter().all(|end| end.is_met(flown)) && !(is_left_open && is_over_time)
     }
 }
 
