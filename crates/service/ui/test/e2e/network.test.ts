@@ -139,11 +139,11 @@ it('a case that comes to rest while its flight is under way is flown with all it
   page.on('request', (request) => {
     if (request.url().endsWith('/simulate')) asked.push(request.postDataJSON().output.samples_per_step);
   });
-  // The answer to the second request, the first of a case that moves, comes long after the rest began.
+  // The answer to the second request, the first of a case that moves, comes long after the rest began. Where other work slows the browser down,
+  // moves may lie so far apart that the slider rests at each.
   network.delay = 1500;
   await dragged(page, () => asked.length >= 2);
-  await expect.poll(() => asked.length, { timeout: 15_000 }).toBe(3);
-  expect(asked[2]).toBeGreaterThan(asked[1] as number);
+  await expect.poll(() => asked.at(-1), { timeout: 15_000 }).toBe(Math.max(...asked));
   await page.close();
 });
 
