@@ -91,12 +91,12 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
 
     /// What happens at the start; returns the end of the flight, if that was it.
     pub(super) fn begin(&mut self) -> Result<Option<Arrival>, SimulationError> {
-        let end = self.begins()?;
+        let end = self.change_at_start()?;
         self.horizon = self.next_instant();
         Ok(end)
     }
 
-    fn begins(&mut self) -> Result<Option<Arrival>, SimulationError> {
+    fn change_at_start(&mut self) -> Result<Option<Arrival>, SimulationError> {
         let is_on_ground = self.scenario.starts_on_stop_altitude() && !self.phase.held;
         // The time of a body may be over before it is set free.
         let ending = self.time_limit();

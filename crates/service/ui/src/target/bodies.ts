@@ -1,4 +1,4 @@
-import type { Case } from '../api';
+import type { Case, Goal } from '../api';
 
 type Events = Case['events'];
 
@@ -20,4 +20,11 @@ export function bodiesOf(events: Events): Body[] {
 /** The names of events that have one. */
 export function namesOf(events: Events): string[] {
   return (events ?? []).flatMap((event) => (typeof event?.name === 'string' && event.name !== '' ? [event.name] : []));
+}
+
+/** The same goal on the flight of a body, or of the vehicle where the name is empty; an event of the former flight is no moment of it. */
+export function goalOn(name: string, goal: Goal): Record<string, unknown> {
+  const { body: _, at, ...rest } = goal as Record<string, unknown>;
+  const isOfEvent = typeof at === 'object' && at !== null && 'event' in at;
+  return { ...rest, ...(at === undefined || isOfEvent ? {} : { at }), ...(name === '' ? {} : { body: name }) };
 }

@@ -5,7 +5,7 @@ import { NumberInput, type Reading } from '../form/inputs';
 import { angles, put } from '../form/line';
 import { type Name, QUANTITIES, scaleOf, unitOf } from '../quantities';
 import { angleUnit, caseUnit, current, draft } from '../store';
-import { bodiesOf, namesOf } from './bodies';
+import { bodiesOf, goalOn, namesOf } from './bodies';
 import { isAiming } from './place';
 import { missesOf } from './request';
 import { found } from './solve';
@@ -44,7 +44,7 @@ function Whose({ index, goal }: { index: number; goal: Goal }) {
     <select
       aria-label={`Body of goal ${index + 1}`}
       value={body ?? ''}
-      onChange={(event) => put(['achieve', index, 'body'], event.currentTarget.value || undefined)}
+      onChange={(event) => put(['achieve', index], goalOn(event.currentTarget.value, goal))}
     >
       <option value="">of the vehicle</option>
       {(body === undefined || names.includes(body) ? names : [...names, body]).map((name) => (
@@ -157,7 +157,11 @@ function QuantityGoal({ index, goal }: { index: number; goal: Goal }) {
   const ends = relation === 'between' ? [0, 1].map((end) => ['between', end]) : [[relation]];
   return (
     <>
-      <select aria-label="Quantity" value={name} onChange={(event) => put(path, startOf(event.currentTarget.value as Name))}>
+      <select
+        aria-label="Quantity"
+        value={name}
+        onChange={(event) => put(path, { ...startOf(event.currentTarget.value as Name), ...(body === undefined ? {} : { body }) })}
+      >
         {(Object.keys(QUANTITIES) as Name[]).map((other) => (
           <option key={other} value={other}>
             {QUANTITIES[other].label}

@@ -75,10 +75,11 @@ function missInWords(goal: Goal, misses: (number | null)[], { reader, own, cours
   const [first, second] = misses;
   if (first === undefined) return null;
   if ('site' in goal) {
-    if (typeof first !== 'number') return 'no landing';
-    if (second === undefined) return first > 0 ? `${distance(first)} too far from the place` : null;
-    if (typeof second !== 'number') return 'no landing';
-    return Math.hypot(first, second) > (goal.tolerance ?? SMALL * RADIUS) ? offset(first, second, course) : null;
+    const { body } = goal as { body?: string };
+    const subject = body === undefined ? '' : `${body} `;
+    if (typeof first !== 'number' || second === null) return body === undefined ? 'no landing' : `no landing of ${body}`;
+    if (second === undefined) return first > 0 ? `${subject}${distance(first)} too far from the place` : null;
+    return Math.hypot(first, second) > (goal.tolerance ?? SMALL * RADIUS) ? `${subject}${offset(first, second, course)}` : null;
   }
   if (!('quantity' in goal)) return null;
   const name = goal.quantity as Name;

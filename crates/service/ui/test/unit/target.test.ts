@@ -5,7 +5,7 @@ import { whyNoCase } from '../../src/form/shape';
 import { fromFragment, toFragment } from '../../src/link';
 import { numberAt } from '../../src/numbers';
 import { numbersWithSlider, rangeOf, roleOf, withRole } from '../../src/roles';
-import { bodiesOf, namesOf } from '../../src/target/bodies';
+import { bodiesOf, goalOn, namesOf } from '../../src/target/bodies';
 import { corridorRequest, taken, targetRequest } from '../../src/target/request';
 import { limitInWords, outcomeInWords } from '../../src/target/why';
 
@@ -151,6 +151,13 @@ it('bodies of a case, with those that leave them, and their events', () => {
   expect(bodiesOf([null, { then: { separate: [null] } }] as never)).toEqual([]);
 });
 
+it('a goal on another flight keeps all but the event of the former one', () => {
+  const goal = { quantity: 'speed', equals: 300, at: { event: 'ignition', side: 'after' } };
+  expect(goalOn('stage', goal as never)).toEqual({ quantity: 'speed', equals: 300, body: 'stage' });
+  const timed = { quantity: 'speed', equals: 300, at: { time: 10 }, body: 'stage' };
+  expect(goalOn('', timed as never)).toEqual({ quantity: 'speed', equals: 300, at: { time: 10 } });
+});
+
 it('what is asked of a case is in its link', async () => {
   const tree = withRole(asked({ vary: [BURN], achieve: [SITE, LOAD] }), ['vehicle', 'reference_area'], 'slider');
   expect(await fromFragment(await toFragment(tree))).toEqual(tree);
@@ -194,6 +201,11 @@ describe('the sentence', () => {
     expect(said({}, bound, 315)).toBe('cannot reach: 150 km short and 150 km to the left, bound by bank angle at 90°');
     expect(said({}, {}, null)).toBe('cannot reach: 212 km off, no small change of the free numbers comes nearer');
     expect(said({ outcome: 'out_of_budget' }, { stationary: false })).toBe('not found in time: nearest so far 212 km short');
+    const ofStage = [{ ...SITE, body: 'stage' }, LOAD] as never;
+    expect(said({}, bound, 0, ofStage)).toBe('cannot reach: stage 212 km short, bound by bank angle at 90°');
+    expect(said({}, { ...bound, misses: [null, null, 0] }, 0, ofStage)).toBe(
+      'cannot reach: no landing of stage, bound by bank angle at 90°',
+    );
   });
 
   it('names every goal that is missed, and what cannot change it', () => {
