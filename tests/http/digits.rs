@@ -7,13 +7,13 @@ use serde_json::Value;
 /// The answers' digits, by the names of the examples. Where they are meant to change, the failing test prints them anew.
 const DIGITS: &[(&str, u64)] = &[
     ("/simulate deorbit", 0xc0d1_1df5_7eff_fb80),
-    ("/simulate lifting_capsule", 0xfb29_5eb8_be1f_a5dd),
+    ("/simulate lifting_capsule", 0x7628_029c_0dea_e755),
     ("/simulate sample_return", 0x44de_482b_17e0_e74f),
     ("/simulate mars", 0x1e2c_2d5c_9c72_1bef),
-    ("/simulate titan", 0xf71a_6476_3512_bc8f),
+    ("/simulate titan", 0x6258_b4c9_f657_89a4),
     ("/simulate launcher", 0xe87b_7b1f_2daa_e089),
-    ("/simulate sounding_rocket", 0x536a_bfc0_2ba5_881d),
-    ("/simulate abort", 0x41aa_6d78_f9ca_f8c1),
+    ("/simulate sounding_rocket", 0x247e_50a1_6ad2_222f),
+    ("/simulate abort", 0x1c6d_b382_e653_cfe7),
     ("/simulate target_1", 0x80b7_3fda_c4ab_f263),
     ("/simulate target_2", 0xa718_9ee9_d5b7_2e29),
     ("/simulate impulse", 0x1103_75e2_1728_87a6),

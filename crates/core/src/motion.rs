@@ -180,7 +180,7 @@ pub enum Singularity {
 }
 
 /// The air as it meets the vehicle.
-struct Flow<S: nalgebra::Scalar> {
+pub(crate) struct Flow<S: nalgebra::Scalar> {
     /// Of the position, and of the velocity relative to the air.
     directions: Directions<S>,
     /// By what tables and schedules are looked up.

@@ -1,5 +1,7 @@
 //! What acts on the vehicle at an instant, and what an event may wait for.
 
+use std::cell::OnceCell;
+
 use nalgebra::Vector3;
 
 use super::directions::{Directions, lift_fade_over_cosine};
@@ -10,7 +12,7 @@ use crate::event::Quantity;
 use crate::heating::{HeatFlux, Stagnation};
 use crate::planet::Pull;
 use crate::propulsion::STANDARD_GRAVITY;
-use crate::scalar::{Over, Scalar, length};
+use crate::scalar::{Over, Scalar, apart, length};
 use crate::vehicle::Coefficients;
 use crate::wind::Wind;
 
@@ -60,54 +62,79 @@ impl<S: Scalar> Loads<S> {
 impl<P: Scalar> Forces<P> {
     /// The loads in a state.
     pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &State<S>) -> Loads<S> {
+        self.loads_in(time, state, &self.flow_with_mach(time, state))
+    }
+
+    /// The same in the air that meets the vehicle, with its Mach number.
+    pub(crate) fn loads_in<S: Over<P> + Scalar<Mask = bool>>(
+        &self,
+        time: S,
+        state: &State<S>,
+        flow: &Flow<S>,
+    ) -> Loads<S> {
         let State { position, velocity, .. } = state;
-        let mut flow = self.flow::<false, _>(time, state);
-        if flow.arguments.mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
-            self.add_mach(&mut flow.arguments, flow.directions.speed);
-        }
         let Directions { radius, speed, up, ahead, .. } = &flow.directions;
-        let density = self.density(&flow);
+        let density = self.density(flow);
         let dynamic_pressure = density * *speed * *speed * 0.5;
-        let air = self.air::<false, _>(time, &flow);
+        let specific_force = OnceCell::new();
+        let specific_force = || *specific_force.get_or_init(|| apart(|| self.specific_force(time, state, flow)));
+        let acceleration = || {
+            if self.held {
+                return Vector3::from_element(S::zero());
+            }
+            specific_force() + self.fall::<false, _>(state, flow)
+        };
         let deceleration = if flow.arguments.ground_speed.less_than(f64::MIN_POSITIVE) {
-            -length(&self.acceleration(time, state))
+            -length(&acceleration())
         } else if matches!(self.models.wind, Wind::Still) && self.burn.is_none() {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
+            let air = self.air::<false, _>(time, flow);
             let outward = position.x * ahead.x + position.y * ahead.y;
             let Pull { inward, axial } = self.models.planet.pull(*radius, up.z);
             air.drag * density + (inward * up.dot(ahead) + axial * ahead.z)
                 - outward * self.models.planet.rotation_rate.powi(2)
         } else {
-            -self.acceleration(time, state).dot(velocity) * flow.arguments.ground_speed.recip()
+            -acceleration().dot(velocity) * flow.arguments.ground_speed.recip()
         };
-        let load_factor = self.load_factor(time, state, &flow, dynamic_pressure);
-        let mach = flow.arguments.mach;
-        let heat_flux = self.heat_flux(density, *speed);
+        let load_factor = if self.held {
+            // What holds it carries it.
+            length(&self.fall::<false, _>(state, flow)) * STANDARD_GRAVITY.recip()
+        } else if self.burn.is_some() {
+            length(&specific_force()) * STANDARD_GRAVITY.recip()
+        } else {
+            self.aerodynamic_load_factor(time, flow, dynamic_pressure)
+        };
         Loads {
             altitude: flow.arguments.altitude,
             density,
             speed: flow.arguments.ground_speed,
             air_speed: *speed,
-            mach,
+            mach: flow.arguments.mach,
             dynamic_pressure,
             deceleration,
             load_factor,
-            heat_flux,
+            heat_flux: self.heat_flux(density, *speed),
         }
     }
 
-    /// The force that is not gravity over the weight at standard gravity.
-    fn load_factor<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>, dynamic_pressure: S) -> S {
-        if self.held {
-            // What holds it carries it.
-            return length(&self.fall::<false, _>(state, flow)) * STANDARD_GRAVITY.recip();
+    /// The air that meets the vehicle in a state, with its Mach number where the atmosphere has a speed of sound.
+    pub(crate) fn flow_with_mach<S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
+        let mut flow = self.flow::<false, _>(time, state);
+        if flow.arguments.mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
+            self.add_mach(&mut flow.arguments, flow.directions.speed);
         }
-        if self.burn.is_some() {
-            let aerodynamic = self.aerodynamic::<false, _>(time, flow);
-            let push = self.push(time, state, flow, &aerodynamic);
-            let felt = push.map_or(aerodynamic, |push| aerodynamic + push.acceleration);
-            return length(&felt) * STANDARD_GRAVITY.recip();
-        }
+        flow
+    }
+
+    /// Lift, drag and thrust over the mass, m/s².
+    fn specific_force<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Vector3<S> {
+        let aerodynamic = self.aerodynamic::<false, _>(time, flow);
+        let push = self.push(time, state, flow, &aerodynamic);
+        push.map_or(aerodynamic, |push| aerodynamic + push.acceleration)
+    }
+
+    /// The load factor of a vehicle without thrust.
+    fn aerodynamic_load_factor<S: Over<P>>(&self, time: S, flow: &Flow<S>, dynamic_pressure: S) -> S {
         // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
         let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, flow);
         let cos_gamma = flow.directions.cos_gamma;

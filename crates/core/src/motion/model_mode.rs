@@ -228,11 +228,22 @@ impl<P: Scalar> Forces<P> {
 
     /// Of every switch the quantity in a state; zero where there is none.
     pub(crate) fn readings<S: Over<P>>(&self, time: S, state: &State<S>) -> [S; Switch::ALL.len()] {
+        self.readings_with(time, state, &OnceCell::new())
+    }
+
+    /// The same with the air that meets the vehicle, and its Mach number, which is made where something asks for it.
+    pub(crate) fn readings_with<S: Over<P>>(
+        &self,
+        time: S,
+        state: &State<S>,
+        flow: &OnceCell<Flow<S>>,
+    ) -> [S; Switch::ALL.len()] {
         let mut readings = [S::zero(); Switch::ALL.len()];
-        let flow = OnceCell::new();
+        let without_mach = OnceCell::new();
         for switch in self.switches.iter() {
             if let Some((quantity, _)) = self.boundaries(switch) {
-                readings[switch as usize] = self.quantity_of(quantity, self.clock(switch, time), time, state, &flow);
+                let clock = self.clock(switch, time);
+                readings[switch as usize] = self.quantity_of(quantity, clock, time, state, [flow, &without_mach]);
             }
         }
         readings
@@ -240,7 +251,8 @@ impl<P: Scalar> Forces<P> {
 
     /// The quantity of one switch in a state; zero where there is none.
     pub(crate) fn reading<S: Over<P>>(&self, switch: Switch, time: S, state: &State<S>) -> S {
-        let of = |(quantity, _)| self.quantity_of(quantity, self.clock(switch, time), time, state, &OnceCell::new());
+        let flows = [&OnceCell::new(), &OnceCell::new()];
+        let of = |(quantity, _)| self.quantity_of(quantity, self.clock(switch, time), time, state, flows);
         self.boundaries(switch).map_or(S::zero(), of)
     }
 
@@ -254,16 +266,23 @@ impl<P: Scalar> Forces<P> {
         self.flow_in::<false, _>(time, altitude, Local { air: None, potential }, state)
     }
 
-    /// A quantity in a state, at a time, s, and by a clock that may lag behind it. `flow` is made for what asks for more than time and place.
+    /// A quantity in a state, at a time, s, and by a clock that may lag behind it. The air that meets the vehicle is made for what asks for more
+    /// than time and place: with its Mach number, and without where that does not matter.
     fn quantity_of<S: Over<P>>(
         &self,
         quantity: SwitchQuantity,
         clock: S,
         time: S,
         state: &State<S>,
-        flow: &OnceCell<Flow<S>>,
+        [with_mach, without]: [&OnceCell<Flow<S>>; 2],
     ) -> S {
-        let flow = || flow.get_or_init(|| self.flow_where_mach_matters(time, state));
+        let with_mach = || with_mach.get_or_init(|| self.flow_with_mach(time, state));
+        let flow = || {
+            if self.by_mach {
+                return with_mach();
+            }
+            without.get_or_init(|| self.flow_where_mach_matters(time, state))
+        };
         match quantity {
             SwitchQuantity::Along(Against::Time) => clock,
             SwitchQuantity::Along(Against::Altitude) => self.models.planet.shape.altitude(&state.position),
@@ -271,7 +290,7 @@ impl<P: Scalar> Forces<P> {
             SwitchQuantity::AngleOfAttack => self.angle_of_attack(time, flow()),
             SwitchQuantity::AirSpeed => flow().directions.speed,
             // It needs the density of the air.
-            SwitchQuantity::LoadExcess => self.load_excess(time, state, &self.flow::<false, _>(time, state)),
+            SwitchQuantity::LoadExcess => self.load_excess(time, state, with_mach()),
         }
     }
 }
@@ -283,6 +302,23 @@ impl Forces {
             || matches!(self.models.wind, Wind::Table(_))
             || self.models.aerodynamics.is_by_mach()
             || self.canopies.as_ref().is_some_and(|canopies| !canopies.filling.is_empty())
+    }
+
+    /// Whether the air may make a load turn more than once in a step, as [`has_tables`](Self::has_tables) says, where the vehicle now is.
+    pub(crate) fn has_uneven_air(&self) -> bool {
+        [Switch::Atmosphere, Switch::Wind].into_iter().any(|switch| self.is_between_corners(switch))
+    }
+
+    /// The same of the coefficients.
+    pub(crate) fn has_uneven_coefficients(&self) -> bool {
+        [Switch::Mach, Switch::TableAngleOfAttack].into_iter().any(|switch| self.is_between_corners(switch))
+            || self.canopies.as_ref().is_some_and(|canopies| !canopies.filling.is_empty())
+    }
+
+    /// Whether the present segment of a table has entries inside.
+    fn is_between_corners(&self, switch: Switch) -> bool {
+        // The segments of a table are below, within and above its range.
+        self.mode.of(switch) == 1 && !self.corners(switch).is_empty()
     }
 
     /// The tables, and the model of a given range, outside which the present mode lies: the edge beyond which it does, and whether that is above it.

@@ -1,7 +1,5 @@
 //! The quantities that an event may wait for.
 
-use std::cell::OnceCell;
-
 use nalgebra::Vector3;
 use num_dual::Dual64;
 
@@ -45,16 +43,16 @@ impl<P: Scalar> Forces<P> {
         at: &StateRate<S>,
         track: &GreatCircle<S>,
     ) -> S {
-        self.quantity_with(quantity, at, track, &OnceCell::new())
+        self.quantity_with(quantity, at, track, || self.loads(at.time, &at.state))
     }
 
-    /// The same with the loads at the moment, which are computed where they are asked for.
+    /// The same with the loads at the moment, for which it asks where it needs them.
     pub(crate) fn quantity_with<S: Over<P> + Scalar<Mask = bool>>(
         &self,
         quantity: Quantity,
         at: &StateRate<S>,
         track: &GreatCircle<S>,
-        loads: &OnceCell<Loads<S>>,
+        loads: impl FnOnce() -> Loads<S>,
     ) -> S {
         let StateRate { time, state } = at;
         let State { position, velocity, mass, heat_load } = state;
@@ -91,10 +89,7 @@ impl<P: Scalar> Forces<P> {
             | Quantity::HeatFlux
             | Quantity::WallTemperature
             | Quantity::Deceleration
-            | Quantity::Density => {
-                let loads = loads.get_or_init(|| self.loads(*time, state));
-                loads.quantity(quantity, self.models.heating.as_ref()).unwrap_or_else(S::zero)
-            }
+            | Quantity::Density => loads().quantity(quantity, self.models.heating.as_ref()).unwrap_or_else(S::zero),
         }
     }
 }

@@ -156,8 +156,9 @@ impl ConditionDetector {
     fn read(&self, forces: &Forces, moment: &StateRate) -> Readings {
         let mut quantities = self.last;
         let loads = OnceCell::new();
+        let loads = || *loads.get_or_init(|| forces.loads(moment.time, &moment.state));
         for watched in &self.watched {
-            let reading = forces.quantity_with(*watched, moment, &self.track, &loads);
+            let reading = forces.quantity_with(*watched, moment, &self.track, loads);
             quantities[*watched as usize] = self.continued(*watched, reading);
         }
         quantities

@@ -73,7 +73,7 @@ impl PeakTracker {
         let time = |part| view.step.time(part);
         let ends = [(0.0, start), (1.0, loads)];
         // Between the entries of tables a quantity may turn more than once in a step.
-        let quarters = (forces.has_tables() && self.may_rise(&start, &loads, view.step.length())).then(|| {
+        let quarters = self.may_turn_and_rise(forces, &start, &loads, view.step.length()).then(|| {
             let [one, two, three] = [0.25, 0.5, 0.75].map(|part| (part, inside(part)));
             [ends[0], one, two, three, ends[1]]
         });
@@ -130,24 +130,25 @@ impl PeakTracker {
         self.peaks_of_phases.push((phase, peaks));
     }
 
-    /// Whether a peak may lie inside a step, as far as the rates at its ends tell.
-    fn may_rise(&self, start: &Loads<Dual64>, end: &Loads<Dual64>, length: f64) -> bool {
-        let Peaks { deceleration, load_factor, dynamic_pressure, altitude, speed, mach, heating } = &self.peaks;
+    /// Whether a quantity may turn more than once in a step and rise above its peak inside, as far as the rates at the ends tell. Altitude and
+    /// speed, whose rates the tables change, turn once.
+    fn may_turn_and_rise(&self, forces: &Forces, start: &Loads<Dual64>, end: &Loads<Dual64>, length: f64) -> bool {
+        let Peaks { deceleration, load_factor, dynamic_pressure, mach, heating, .. } = &self.peaks;
         let above = |peak: &Peak, quantity: fn(&Loads<Dual64>) -> Dual64| {
             let (start, end) = (quantity(start), quantity(end));
             start.re.max(end.re) + length * start.eps.abs().max(end.eps.abs()) > peak.value
         };
-        above(deceleration, |loads| loads.deceleration)
-            || above(load_factor, |loads| loads.load_factor)
-            || above(dynamic_pressure, |loads| loads.dynamic_pressure)
-            || above(altitude, |loads| loads.altitude)
-            || above(speed, |loads| loads.speed)
-            || mach.as_ref().is_some_and(|mach| above(mach, mach_of))
-            || heating.as_ref().is_some_and(|heating| {
-                above(&heating.convective_heat_flux, |loads| heat_flux_of(loads).convective)
-                    || above(&heating.radiative_heat_flux, |loads| heat_flux_of(loads).radiative)
-                    || above(&heating.heat_flux, |loads| heat_flux_of(loads).total())
-            })
+        let has_uneven_air = forces.has_uneven_air();
+        (has_uneven_air || forces.has_uneven_coefficients())
+            && (above(deceleration, |loads| loads.deceleration) || above(load_factor, |loads| loads.load_factor))
+            || has_uneven_air
+                && (above(dynamic_pressure, |loads| loads.dynamic_pressure)
+                    || mach.as_ref().is_some_and(|mach| above(mach, mach_of))
+                    || heating.as_ref().is_some_and(|heating| {
+                        above(&heating.convective_heat_flux, |loads| heat_flux_of(loads).convective)
+                            || above(&heating.radiative_heat_flux, |loads| heat_flux_of(loads).radiative)
+                            || above(&heating.heat_flux, |loads| heat_flux_of(loads).total())
+                    }))
     }
 
     /// Warns of every table outside which the present mode lies, once an edge.

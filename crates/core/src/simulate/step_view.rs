@@ -9,7 +9,7 @@ use num_dual::Dual64;
 use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Formulation, Loads, State, StateRate, Switch};
+use crate::motion::{Flow, Formulation, Loads, State, StateRate, Switch};
 
 /// An accepted step.
 pub(super) struct StepView<'a, F, const N: usize> {
@@ -19,6 +19,7 @@ pub(super) struct StepView<'a, F, const N: usize> {
     /// The number of the phase to which it belongs.
     pub(super) phase: usize,
     interpolant: OnceCell<Interpolant<N>>,
+    flow_at_end: OnceCell<Flow<Dual64>>,
     loads_at_end: OnceCell<Loads<Dual64>>,
     quantities_at_end: [OnceCell<Dual64>; Quantity::ALL.len()],
     readings_at_end: OnceCell<[Dual64; Switch::ALL.len()]>,
@@ -35,6 +36,7 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
             motion,
             phase,
             interpolant: OnceCell::new(),
+            flow_at_end: OnceCell::new(),
             loads_at_end: OnceCell::new(),
             quantities_at_end: Default::default(),
             readings_at_end: OnceCell::new(),
@@ -101,13 +103,14 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
     pub(super) fn loads_at_end(&self) -> &Loads<Dual64> {
         self.loads_at_end.get_or_init(|| {
             let StateRate { time, state, .. } = self.end();
-            self.motion.forces().loads(time, &state)
+            let forces = self.motion.forces();
+            forces.loads_in(time, &state, self.flow_at_end.get_or_init(|| forces.flow_with_mach(time, &state)))
         })
     }
 
     /// What an event may wait for, at the end; ranges from the beginning of `track`.
     pub(super) fn quantity_at_end(&self, quantity: Quantity, track: &GreatCircle<Dual64>) -> Dual64 {
-        let read = || self.motion.forces().quantity_with(quantity, &self.end(), track, &self.loads_at_end);
+        let read = || self.motion.forces().quantity_with(quantity, &self.end(), track, || *self.loads_at_end());
         *self.quantities_at_end[quantity as usize].get_or_init(read)
     }
 
@@ -115,7 +118,7 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
     pub(super) fn readings_at_end(&self) -> &[Dual64; Switch::ALL.len()] {
         self.readings_at_end.get_or_init(|| {
             let StateRate { time, state, .. } = self.end();
-            self.motion.forces().readings(time, &state)
+            self.motion.forces().readings_with(time, &state, &self.flow_at_end)
         })
     }
 
