@@ -38,7 +38,7 @@ use crate::scalar::{Over, Scalar, apart, length, reciprocal_or_one};
 use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
-use directions::{Directions, lift_fade_over_cosine, relative_to_air};
+use directions::{Directions, lift_fade_over_cosine, lift_fade_slope, relative_to_air};
 use thrust::Push;
 
 /// Within this angle of the vertical the lift fades out, rad: in vertical flight the bank angle has no meaning.
@@ -51,6 +51,8 @@ pub const WIND_FADE_ANGLE: f64 = 1e-3;
 const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
 /// Times of drag that a step may last; see [`Forces::longest_step`].
 const DRAG_TIMES_A_STEP: f64 = 1.5;
+/// Times in which lift turns the flight to the vertical that a step may last; see [`Forces::longest_step`].
+const FADE_TIMES_A_STEP: f64 = 3.0;
 
 /// The forces on the vehicle: gravity, lift, drag, thrust and parachutes. The parameters may carry derivatives (dual numbers), or be those
 /// of several vehicles in the lanes of one computation.
@@ -748,13 +750,17 @@ impl Forces {
     /// The longest explicit step that may start in a state, s.
     ///
     /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
-    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do.
+    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do. The same holds near the vertical, to which lift
+    /// that fades there turns the flight within V/(L/m) over the slope of the fade.
     fn longest_step(&self, time: f64, state: &State<f64>) -> f64 {
         let flow = self.flow::<false, _>(time, state);
         let longest = self.longest_fall(time, state, &flow);
         let air = self.air::<false, _>(time, &flow);
-        let drag_time = flow.directions.speed / (air.drag.max(air.lift.abs()) * self.density(&flow));
+        let (speed, density) = (flow.directions.speed, self.density(&flow));
+        let drag_time = speed / (air.drag.max(air.lift.abs()) * density);
         let longest = if drag_time.is_nan() { longest } else { longest.min(DRAG_TIMES_A_STEP * drag_time) };
+        let fade_rate = lift_fade_slope(flow.directions.cos_gamma) * air.lift.abs() * density / speed;
+        let longest = if fade_rate > 0.0 { longest.min(FADE_TIMES_A_STEP / fade_rate) } else { longest };
         longest.min(self.longest_braking(time, state))
     }
 

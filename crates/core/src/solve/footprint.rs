@@ -7,6 +7,7 @@
 mod curve;
 mod maximise;
 mod mesh;
+mod patch;
 mod plane;
 mod rays;
 mod region;

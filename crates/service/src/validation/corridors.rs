@@ -18,7 +18,7 @@ pub(super) fn checks(program: Program) -> Result<Vec<Check>, ApiError> {
     let mut checks = Vec::new();
     let amat = tree(cases::AMAT_PUBLISHED);
     for published in elements(&amat["corridors"]) {
-        checks.extend(limits_of_amat(program, &amat["defaults"], published)?);
+        checks.extend(limits_of_amat(program, &amat, published)?);
     }
     let chapman = tree(cases::CHAPMAN);
     for published in elements(&chapman["corridors"]) {
@@ -33,11 +33,14 @@ fn origin(published: &Value) -> Origin {
     Origin { group: Group::Corridors, case, source, note }
 }
 
-/// The flight-path angles of both limits.
-fn limits_of_amat(program: Program, defaults: &Value, published: &Value) -> Result<Vec<Check>, ApiError> {
+/// The flight-path angles of both limits, in the standard air or in one of the file.
+fn limits_of_amat(program: Program, file: &Value, published: &Value) -> Result<Vec<Check>, ApiError> {
     let ends = elements(&published["ends"]);
     let pass = |end: &Value| {
-        let mut request = defaults.clone();
+        let mut request = file["defaults"].clone();
+        if let Some(air) = published["air"].as_str() {
+            request["atmosphere"] = file["airs"][air].clone();
+        }
         merge(&mut request, &published["request"]);
         merge(&mut request, &end["request"]);
         Pass::new(request)

@@ -1,13 +1,15 @@
 //! Where flights land when two numbers vary: the union of the images of triangles of the range.
 //!
-//! Triangles are divided where the middle of an edge lands off the middle of its image: to the resolution near the edge of the union, to some
-//! times that within, so that no triangle covers a bay or a hole. Triangles in which flights cease to keep the limits are cut there.
+//! The image of an edge is taken for the parabola through its ends and its middle, which is flown. Triangles are divided where the middle of an edge
+//! lands off the parabola of the edge of which it is half, or beside: to the resolution near the edge of the union, to some times that within, so
+//! that no triangle covers a bay or a hole. Triangles in which flights cease to keep the limits are cut there.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use super::patch::{self, Parabola, Side};
 use super::plane::Point;
 use super::region::{Edge, Polygon, union};
-use super::survey::{FlightIndex, Halt, Survey, distance, from_line, off_middle};
+use super::survey::{FlightIndex, Halt, Survey, distance, from_line};
 use super::{LONGEST, MOST_ROUNDS};
 
 /// Intervals into which each range is divided at first; with the middles of the edges, the flights are twice as dense.
@@ -16,10 +18,16 @@ pub(super) const INTERVALS: u32 = 16;
 const PARTS: f64 = 16_777_216.0;
 /// Within the union, an edge may be off by so many resolutions.
 const WITHIN: f64 = 5.0;
-/// The middle of half a smooth edge is off by this part of what that of the whole is.
-const OF_HALVES: f64 = 0.25;
+/// The middle of half a smooth edge is off the parabola of the whole by this part of what that of the whole is off.
+const OF_HALVES: f64 = 0.125;
+/// A parabola is off by this part of what its middle is off that of the whole: twice as much as where the third derivative does not change.
+const OF_PARABOLA: f64 = 0.25;
+/// The same of the line along which a triangle is cut, by how far it is bent.
+const OF_CUT: f64 = 0.125;
 /// What is foreseen to be off by less than this part of what is allowed is not flown.
 const ENOUGH: f64 = 0.9;
+/// Chords in place of parabolas are off by this part of the resolution.
+const OF_CHORDS: f64 = 0.25;
 /// From the edge of the union, so many resolutions are near.
 const NEAR: f64 = 20.0;
 
@@ -30,14 +38,39 @@ pub(super) struct Mesh {
     /// The last triangles of which all edges and cuts are known; empty where there are none.
     examined: Vec<[FlightIndex; 3]>,
     by_place: HashMap<[u32; 2], FlightIndex>,
-    /// How far the middle of the image of an edge is off, m.
-    chord_errors: HashMap<[FlightIndex; 2], f64>,
-    /// How far it should be, by the edge of twice its length that it is half of, or beside.
-    foreseen: HashMap<[FlightIndex; 2], f64>,
+    /// How edges are bent whose middles were flown.
+    bends: HashMap<[FlightIndex; 2], Bend>,
+    /// How they should be, by the edge of twice its length that each is half of, or beside.
+    foreseen: HashMap<[FlightIndex; 2], Bend>,
     /// The last flight that keeps all limits on an edge.
     last_kept: HashMap<[FlightIndex; 2], FlightIndex>,
+    /// The flight amid what is kept of an edge that is on the rim of the range.
+    amid_kept: HashMap<[FlightIndex; 2], FlightIndex>,
     /// The cuts of triangles.
     cuts: HashMap<[FlightIndex; 3], Cut>,
+}
+
+/// How the image of an edge is bent.
+#[derive(Clone, Copy, Debug)]
+struct Bend {
+    /// How far its middle is off that of its chord, m.
+    sagitta: Point,
+    /// How far that is off what was foreseen, m; without bound where the middle does not keep the limits.
+    surprise: f64,
+}
+
+impl Bend {
+    /// That of a half of the edge, or of an edge of half its length beside it.
+    fn of_half(self) -> Self {
+        Self { sagitta: self.sagitta.map(|it| 0.25 * it), surprise: OF_HALVES * self.surprise }
+    }
+
+    /// That of the line from a corner of a triangle to the middle of the edge `across`, where the triangle is quadratic.
+    fn of_median(across: Self, one: Self, other: Self) -> Self {
+        let sagitta = [0, 1].map(|axis| 0.5 * (one.sagitta[axis] + other.sagitta[axis]) - 0.25 * across.sagitta[axis]);
+        let surprise = OF_PARABOLA * across.surprise.max(one.surprise).max(other.surprise);
+        Self { sagitta, surprise }
+    }
 }
 
 /// Where flights cease to keep the limits within a triangle.
@@ -59,6 +92,15 @@ fn edges([a, b, c]: [FlightIndex; 3]) -> [[FlightIndex; 2]; 3] {
     [edge(b, c), edge(c, a), edge(a, b)]
 }
 
+/// Which of the edges of a triangle is the longest in the range.
+fn longest<E>(survey: &Survey<E>, edges: [[FlightIndex; 2]; 3]) -> usize {
+    let square = |index: usize| {
+        let [one, other] = edges[index].map(|flight| parts(&survey.flights[flight].place));
+        [0, 1].map(|axis| u64::from(one[axis].abs_diff(other[axis])).pow(2)).iter().sum::<u64>()
+    };
+    (0..3).max_by_key(|index| (square(*index), edges[*index])).unwrap_or(0)
+}
+
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of parts of the range")]
 fn parts(place: &[f64]) -> [u32; 2] {
     [0, 1].map(|axis| (place[axis] * PARTS) as u32)
@@ -72,9 +114,10 @@ impl Mesh {
             triangles: Vec::new(),
             examined: Vec::new(),
             by_place: HashMap::new(),
-            chord_errors: HashMap::new(),
+            bends: HashMap::new(),
             foreseen: HashMap::new(),
             last_kept: HashMap::new(),
+            amid_kept: HashMap::new(),
             cuts: HashMap::new(),
         };
         let part = |index: u32| f64::from(index) / f64::from(INTERVALS);
@@ -119,20 +162,40 @@ impl Mesh {
     /// Divides triangles until the union is as exact as the resolution.
     pub(super) fn refine<E>(&mut self, survey: &mut Survey<E>, resolution: f64) -> Result<(), Halt<E>> {
         self.resolution = resolution;
+        self.foresee_first(survey);
         for round in 0..=MOST_ROUNDS {
             let near = Edge::of(&self.covered(survey, &self.triangles), NEAR * resolution);
+            let flown = survey.flights.len();
             // In their order, so that the same request flies the same flights.
             let mut halved: BTreeSet<[FlightIndex; 2]> = BTreeSet::new();
             for triangle in self.triangles.clone() {
                 halved.extend(self.edges_to_halve(survey, triangle, &near, round == 0)?);
             }
             self.examined.clone_from(&self.triangles);
-            if halved.is_empty() || round == MOST_ROUNDS {
+            // What was flown may have moved the edge of the union.
+            if halved.is_empty() && survey.flights.len() == flown || round == MOST_ROUNDS {
                 break;
             }
-            self.divide(survey, &halved)?;
+            self.divide(survey, halved)?;
         }
         Ok(())
+    }
+
+    /// Foresees the bends of the first edges, whose middles were flown, by the edges of twice their length between the same flights.
+    fn foresee_first<E>(&mut self, survey: &Survey<E>) {
+        let unit = parts(&[1.0, 1.0])[0] / INTERVALS;
+        for edge in self.triangles.iter().flat_map(|triangle| edges(*triangle)) {
+            let [one, other] = edge.map(|flight| parts(&survey.flights[flight].place));
+            let least = [0, 1].map(|axis| one[axis].min(other[axis]) / unit / 2 * 2 * unit);
+            let way = [0, 1].map(|axis| one[axis].abs_diff(other[axis]));
+            let flights = [0, 1, 2].map(|step| self.by_place.get(&[0, 1].map(|axis| least[axis] + step * way[axis])));
+            if let [Some(start), Some(middle), Some(end)] =
+                flights.map(|flight| flight.and_then(|flight| survey.kept_point(*flight)))
+            {
+                let Parabola { sagitta, .. } = Parabola::through([start, end], middle);
+                self.foreseen.insert(edge, Bend { sagitta, surprise: f64::INFINITY }.of_half());
+            }
+        }
     }
 
     /// The edges of a triangle that are to be halved.
@@ -159,32 +222,44 @@ impl Mesh {
             }
         }
         if let Some(cut) = self.cut(survey, triangle)?
-            && OF_HALVES * cut.chord_error > ENOUGH * self.resolution
+            && OF_CUT * cut.chord_error > ENOUGH * self.resolution
         {
             halved.extend(edges(triangle));
         }
         Ok(halved)
     }
 
-    /// Whether an edge, both ends of which keep the limits, is to be halved: where its middle was flown and is off by more than what its halves
-    /// may be off.
+    /// Whether an edge, both ends of which keep the limits, is to be halved: where its parabola may be off by more than is allowed.
     fn is_curved<E>(&mut self, survey: &mut Survey<E>, edge: [FlightIndex; 2], near: &Edge) -> Result<bool, Halt<E>> {
-        let [Some(one), Some(other)] = edge.map(|flight| survey.kept_point(flight)) else { return Ok(false) };
-        let is_near = near.is_near([0, 1].map(|axis| 0.5 * (one[axis] + other[axis])));
+        let Some(image) = self.image(survey, edge) else { return Ok(false) };
+        let is_near = is_near(&image, near);
         let limit = if is_near { self.resolution } else { WITHIN * self.resolution };
-        if let Some(error) = self.chord_errors.get(&edge) {
-            return Ok(*error > OF_HALVES * limit);
+        let foreseen = self.foreseen.get(&edge).copied();
+        if let Some(bend) = self.bends.get(&edge) {
+            return Ok(OF_PARABOLA * bend.surprise > limit);
         }
-        if self.foreseen.get(&edge).is_some_and(|error| *error <= ENOUGH * limit) {
+        if foreseen.is_some_and(|bend| bend.surprise <= ENOUGH * limit) {
             return Ok(false);
         }
         let middle = self.middle(survey, edge)?;
-        let error = match survey.kept_point(middle) {
-            Some(middle) if distance(one, other) <= LONGEST => off_middle(middle, one, other),
-            _ => f64::INFINITY,
+        let [one, other] = image.ends;
+        let bend = match survey.kept_point(middle) {
+            Some(middle) if distance(one, other) <= LONGEST => {
+                let Parabola { sagitta, .. } = Parabola::through(image.ends, middle);
+                let foreseen = foreseen.map_or([0.0; 2], |bend| bend.sagitta);
+                Bend { sagitta, surprise: distance(sagitta, foreseen) }
+            }
+            _ => Bend { sagitta: [0.0; 2], surprise: f64::INFINITY },
         };
-        self.chord_errors.insert(edge, error);
-        Ok(error > OF_HALVES * limit)
+        self.bends.insert(edge, bend);
+        Ok(OF_PARABOLA * bend.surprise > limit)
+    }
+
+    /// The image of an edge, as far as it is known; none where its ends do not keep the limits.
+    fn image<E>(&self, survey: &Survey<E>, edge: [FlightIndex; 2]) -> Option<Parabola> {
+        let ends = [survey.kept_point(edge[0])?, survey.kept_point(edge[1])?];
+        let bend = self.bends.get(&edge).or(self.foreseen.get(&edge));
+        Some(Parabola { ends, sagitta: bend.map_or([0.0; 2], |bend| bend.sagitta) })
     }
 
     /// The cut of a triangle; none where all corners keep the limits, or none does.
@@ -195,6 +270,9 @@ impl Mesh {
         let Some((alone, [one, other])) = alone(survey, triangle) else { return Ok(None) };
         let first = self.last_kept_on(survey, alone, one)?;
         let second = self.last_kept_on(survey, alone, other)?;
+        for (end, cut) in [(one, first), (other, second)] {
+            self.fly_amid(survey, edge(alone, end), cut)?;
+        }
         // From the corner that is alone, across the middle of the line, to the opposite edge.
         let line = survey.between(first, second, 0.5);
         let middle = survey.fly(line)?;
@@ -246,45 +324,100 @@ impl Mesh {
         Ok(flight)
     }
 
-    /// Divides the triangles that have edges that are to be halved: neighbours have the same corners.
-    fn divide<E>(&mut self, survey: &mut Survey<E>, halved: &BTreeSet<[FlightIndex; 2]>) -> Result<(), Halt<E>> {
-        let mut finer = Vec::with_capacity(self.triangles.len() + 3 * halved.len());
+    /// Flies amid what is kept of an edge that is cut, if it is on the rim of the range: elsewhere what lies on its other side goes on there.
+    fn fly_amid<E>(&mut self, survey: &mut Survey<E>, edge: [FlightIndex; 2], cut: FlightIndex) -> Result<(), Halt<E>> {
+        let [one, other] = edge.map(|flight| parts(&survey.flights[flight].place));
+        let whole = parts(&[1.0, 1.0])[0];
+        let is_on_rim = (0..2).any(|axis| one[axis] == other[axis] && [0, whole].contains(&one[axis]));
+        let kept = edge.into_iter().find(|flight| survey.keeps(*flight));
+        if let Some(kept) = kept.filter(|kept| is_on_rim && *kept != cut)
+            && !self.amid_kept.contains_key(&edge)
+        {
+            let amid = survey.fly(survey.between(kept, cut, 0.5))?;
+            self.amid_kept.insert(edge, amid);
+        }
+        Ok(())
+    }
+
+    /// Divides the triangles that have edges that are to be halved: neighbours have the same corners. The longest edge of such a triangle is halved
+    /// as well, so that none becomes narrow.
+    ///
+    /// # Reference
+    /// M. C. Rivara, Algorithms for refining triangular grids suitable for adaptive and multigrid techniques, International Journal for
+    /// Numerical Methods in Engineering 20 (1984), 745-756.
+    fn divide<E>(&mut self, survey: &mut Survey<E>, mut halved: BTreeSet<[FlightIndex; 2]>) -> Result<(), Halt<E>> {
+        let mut count = 0;
+        while count < halved.len() {
+            count = halved.len();
+            for triangle in &self.triangles {
+                let edges = edges(*triangle);
+                if edges.iter().any(|edge| halved.contains(edge)) {
+                    halved.insert(edges[longest(survey, edges)]);
+                }
+            }
+        }
         let mut middles = BTreeMap::new();
         for edge in halved {
-            middles.insert(*edge, self.middle(survey, *edge)?);
+            middles.insert(edge, self.middle(survey, edge)?);
         }
         for ([one, other], middle) in &middles {
-            if let Some(error) = self.chord_errors.get(&edge(*one, *other)) {
-                for half in [edge(*one, *middle), edge(*middle, *other)] {
-                    self.foreseen.insert(half, OF_HALVES * error);
-                }
-            }
+            let bend = self.bend(edge(*one, *other));
+            self.foresee([edge(*one, *middle), edge(*middle, *other)], bend.map(Bend::of_half));
         }
-        for triangle in &self.triangles {
-            let [a, b, c] = *triangle;
-            let middle = edges(*triangle).map(|edge| middles.get(&edge).copied());
-            match middle {
-                [None, None, None] => finer.push([a, b, c]),
-                [Some(d), None, None] => finer.extend([[a, b, d], [a, d, c]]),
-                [None, Some(e), None] => finer.extend([[b, c, e], [b, e, a]]),
-                [None, None, Some(f)] => finer.extend([[c, a, f], [c, f, b]]),
-                [Some(d), Some(e), None] => finer.extend([[c, e, d], [e, a, d], [a, b, d]]),
-                [None, Some(e), Some(f)] => finer.extend([[a, f, e], [f, b, e], [b, c, e]]),
-                [Some(d), None, Some(f)] => finer.extend([[b, d, f], [d, c, f], [c, a, f]]),
-                [Some(d), Some(e), Some(f)] => {
-                    finer.extend([[a, f, e], [f, b, d], [e, d, c], [f, d, e]]);
-                    for (parallel, of_two) in
-                        [(edge(e, f), edge(b, c)), (edge(f, d), edge(c, a)), (edge(d, e), edge(a, b))]
-                    {
-                        if let Some(error) = self.chord_errors.get(&of_two) {
-                            self.foreseen.insert(parallel, OF_HALVES * error);
-                        }
-                    }
-                }
-            }
+        let mut finer = Vec::with_capacity(self.triangles.len() + 3 * middles.len());
+        for triangle in std::mem::take(&mut self.triangles) {
+            let edges = edges(triangle);
+            let middle = edges.map(|edge| middles.get(&edge).copied());
+            finer.extend(self.pieces(triangle, middle, longest(survey, edges)));
         }
         self.triangles = finer;
         Ok(())
+    }
+
+    /// The pieces of a triangle, by the middles of its edges, and how the new edges between them should be bent.
+    fn pieces(
+        &mut self,
+        triangle: [FlightIndex; 3],
+        middles: [Option<FlightIndex>; 3],
+        longest: usize,
+    ) -> Vec<[FlightIndex; 3]> {
+        let bends = edges(triangle).map(|edge| self.bend(edge));
+        // From that opposite of the longest edge, around.
+        let [first, second, third] = [0, 1, 2].map(|step| (longest + step) % 3);
+        let [a, b, c] = [first, second, third].map(|corner| triangle[corner]);
+        for (one, other, of_two) in [(first, second, third), (second, third, first), (third, first, second)] {
+            if let [Some(one), Some(other)] = [middles[one], middles[other]] {
+                self.foresee([edge(one, other)], bends[of_two].map(Bend::of_half));
+            }
+        }
+        let [on_longest, on_second, on_third] = [first, second, third].map(|edge| middles[edge]);
+        let Some(d) = on_longest else { return vec![triangle] };
+        if on_second.is_none() || on_third.is_none() {
+            let median = match [first, second, third].map(|edge| bends[edge]) {
+                [Some(across), Some(one), Some(other)] => Some(Bend::of_median(across, one, other)),
+                _ => None,
+            };
+            self.foresee([edge(a, d)], median);
+        }
+        match [on_second, on_third] {
+            [None, None] => vec![[a, b, d], [a, d, c]],
+            [Some(e), None] => vec![[a, b, d], [a, d, e], [e, d, c]],
+            [None, Some(f)] => vec![[a, f, d], [f, b, d], [a, d, c]],
+            [Some(e), Some(f)] => vec![[a, f, e], [f, b, d], [e, d, c], [f, d, e]],
+        }
+    }
+
+    /// Notes how edges should be bent, as far as that is known.
+    fn foresee<const K: usize>(&mut self, edges: [[FlightIndex; 2]; K], bend: Option<Bend>) {
+        if let Some(bend) = bend {
+            self.foreseen.extend(edges.map(|edge| (edge, bend)));
+        }
+    }
+
+    /// How an edge is bent, as far as that is known.
+    fn bend(&self, edge: [FlightIndex; 2]) -> Option<Bend> {
+        let bend = self.bends.get(&edge).or(self.foreseen.get(&edge))?;
+        bend.surprise.is_finite().then_some(*bend)
     }
 
     /// The union of the images, and by how much its edge may be off, m: without bound where that is not known.
@@ -298,45 +431,85 @@ impl Mesh {
 
     /// What the images of triangles cover, as far as their flights keep the limits, and their cuts are known.
     fn covered<E>(&self, survey: &Survey<E>, triangles: &[[FlightIndex; 3]]) -> Vec<Polygon> {
-        let image = |triangle: &[FlightIndex; 3]| {
-            let kept = triangle.map(|flight| survey.kept_point(flight));
-            if let [Some(a), Some(b), Some(c)] = kept {
-                return Some(vec![a, b, c]);
-            }
-            let (_, [one, other]) = alone(survey, *triangle)?;
-            let cut = self.cuts.get(triangle)?;
-            let [first, between, second] = cut.flights.map(|flight| survey.kept_point(flight));
-            // From the corner that is alone, or along the opposite edge.
-            let corners = kept.into_iter().flatten().count();
-            let rest = if corners == 1 {
-                vec![kept.into_iter().flatten().next()]
-            } else {
-                vec![survey.kept_point(other), survey.kept_point(one)]
-            };
-            Some([first, between, second].into_iter().chain(rest).flatten().collect::<Vec<Point>>())
-        };
-        let images: Vec<_> = triangles.iter().filter_map(image).filter(|image| image.len() > 2).collect();
+        let tolerance = OF_CHORDS * self.resolution;
+        let images: Vec<_> = triangles
+            .iter()
+            .flat_map(|triangle| match self.sides(survey, *triangle) {
+                Some(sides) => patch::polygons(&sides, tolerance),
+                None => self.kept_part(survey, *triangle, tolerance).into_iter().collect(),
+            })
+            .filter(|image| image.len() > 2)
+            .collect();
         let least = if self.resolution.is_finite() { self.resolution.powi(2) } else { 0.0 };
         union(&images, least)
+    }
+
+    /// The images of the edges of a triangle, around it; none where a corner does not keep the limits.
+    fn sides<E>(&self, survey: &Survey<E>, [a, b, c]: [FlightIndex; 3]) -> Option<[Side; 3]> {
+        let side = |from, to| self.side(survey, from, to);
+        Some([side(a, b)?, side(b, c)?, side(c, a)?])
+    }
+
+    fn side<E>(&self, survey: &Survey<E>, from: FlightIndex, to: FlightIndex) -> Option<Side> {
+        let parabola = self.image(survey, edge(from, to))?;
+        Some(Side { parabola, is_against: from > to })
+    }
+
+    /// What is kept of a triangle that is cut; none where its cut is not known.
+    fn kept_part<E>(&self, survey: &Survey<E>, triangle: [FlightIndex; 3], tolerance: f64) -> Option<Vec<Point>> {
+        let (alone, [one, other]) = alone(survey, triangle)?;
+        let [first, between, second] = self.cuts.get(&triangle)?.flights;
+        let [start, middle, end] = [first, between, second].map(|flight| survey.kept_point(flight));
+        let line = Side { parabola: Parabola::through([start?, end?], middle?), is_against: false };
+        let sides = if survey.keeps(alone) {
+            // From the cut to the corner that is alone, and back to the cut.
+            vec![self.kept_side(survey, alone, other, second, true)?, self.kept_side(survey, alone, one, first, false)?]
+        } else {
+            vec![
+                self.kept_side(survey, other, alone, second, true)?,
+                self.side(survey, other, one)?,
+                self.kept_side(survey, one, alone, first, false)?,
+            ]
+        };
+        Some([line].iter().chain(&sides).flat_map(|side| side.points(tolerance)).collect())
+    }
+
+    /// The image of what is kept of an edge, from its end that is kept to the cut, or against that.
+    fn kept_side<E>(
+        &self,
+        survey: &Survey<E>,
+        kept: FlightIndex,
+        broken: FlightIndex,
+        cut: FlightIndex,
+        is_against: bool,
+    ) -> Option<Side> {
+        let ends = [survey.kept_point(kept)?, survey.kept_point(cut)?];
+        let middle = self.amid_kept.get(&edge(kept, broken)).and_then(|amid| survey.kept_point(*amid));
+        let parabola = middle.map_or(Parabola::straight(ends), |middle| Parabola::through(ends, middle));
+        Some(Side { parabola, is_against })
     }
 
     fn error<E>(&self, survey: &Survey<E>, triangles: &[[FlightIndex; 3]], covered: &[Polygon]) -> f64 {
         let near = Edge::of(covered, NEAR * self.resolution);
         let of_edge = |edge: [FlightIndex; 2]| {
-            let [one, other] = [survey.kept_point(edge[0])?, survey.kept_point(edge[1])?];
-            let is_near = near.is_near([0, 1].map(|axis| 0.5 * (one[axis] + other[axis])));
-            let error = self.chord_errors.get(&edge).or(self.foreseen.get(&edge));
-            let error = error.map_or(f64::INFINITY, |error| *error);
-            (is_near || error.is_infinite()).then_some(error)
+            let image = self.image(survey, edge)?;
+            let flown = self.bends.get(&edge).map(|bend| OF_PARABOLA * bend.surprise);
+            let error = flown.or(self.foreseen.get(&edge).map(|bend| bend.surprise)).unwrap_or(f64::INFINITY);
+            (error.is_infinite() || is_near(&image, &near)).then_some(error)
         };
         let of_triangle = |triangle: &[FlightIndex; 3]| {
             let of_cut = alone(survey, *triangle)
-                .map(|_| self.cuts.get(triangle).map_or(f64::INFINITY, |cut| OF_HALVES * cut.chord_error));
+                .map(|_| self.cuts.get(triangle).map_or(f64::INFINITY, |cut| OF_CUT * cut.chord_error));
             let of_edges = edges(*triangle).into_iter().filter_map(of_edge);
             of_edges.chain(of_cut).fold(0.0, f64::max)
         };
         triangles.iter().map(of_triangle).fold(0.0, f64::max)
     }
+}
+
+/// Whether any part of the inside of an edge is near the edge of the union.
+fn is_near(image: &Parabola, near: &Edge) -> bool {
+    [0.25, 0.5, 0.75].into_iter().any(|part| near.is_near(image.at(part)))
 }
 
 /// The corner of a triangle that alone keeps the limits, or alone does not, and the others in their order.

@@ -1,6 +1,6 @@
 //! Polygons of the plane: their union, area, convex hull, and what lies near their edge.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use i_overlay::core::fill_rule::FillRule;
@@ -70,16 +70,72 @@ fn unrolled(ring: &[Point], plane: &Plane) -> Vec<[f64; 2]> {
 }
 
 /// What any of the polygons covers, whichever way around each goes, without pieces and holes that are smaller than `least` m².
+///
+/// Where polygons lie side by side, the segments between them are left out first, which changes the winding number of no point: of a sheet of
+/// thousands of polygons its rim is left.
 pub(super) fn union(polygons: &[Vec<Point>], least: f64) -> Vec<Polygon> {
-    let counterclockwise = |polygon: &Vec<Point>| {
-        let mut polygon = polygon.clone();
-        if ring_area(&polygon) < 0.0 {
-            polygon.reverse();
+    let mut segments = Segments::default();
+    for polygon in polygons {
+        let is_clockwise = ring_area(polygon) < 0.0;
+        for (one, next) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+            if is_clockwise {
+                segments.add(*next, *one);
+            } else {
+                segments.add(*one, *next);
+            }
         }
-        polygon
-    };
-    let polygons: Vec<_> = polygons.iter().map(counterclockwise).collect();
-    simplified(&polygons, least)
+    }
+    simplified(&segments.into_rings(), least)
+}
+
+/// Directed segments, of which as many end at every point as begin there. Those that are the opposite of one another are left out.
+#[derive(Default)]
+struct Segments {
+    /// The ends of those that begin at a point.
+    from: BTreeMap<PointKey, Vec<Point>>,
+}
+
+/// The digits of a point.
+type PointKey = [u64; 2];
+
+fn key(point: Point) -> PointKey {
+    // Of the two zeros there is one.
+    point.map(|coordinate| (coordinate + 0.0).to_bits())
+}
+
+impl Segments {
+    fn add(&mut self, one: Point, other: Point) {
+        if key(one) == key(other) {
+            return;
+        }
+        if let Some(ends) = self.from.get_mut(&key(other))
+            && let Some(opposite) = ends.iter().position(|end| key(*end) == key(one))
+        {
+            ends.swap_remove(opposite);
+            return;
+        }
+        self.from.entry(key(one)).or_default().push(other);
+    }
+
+    /// The closed lines that they make.
+    fn into_rings(mut self) -> Vec<Vec<Point>> {
+        let mut rings = Vec::new();
+        while let Some((start, mut ends)) = self.from.pop_first() {
+            while let Some(mut last) = ends.pop() {
+                let mut ring = Vec::new();
+                loop {
+                    ring.push(last);
+                    let next = if key(last) == start { None } else { self.from.get_mut(&key(last)).and_then(Vec::pop) };
+                    match next {
+                        Some(next) => last = next,
+                        None => break,
+                    }
+                }
+                rings.push(ring);
+            }
+        }
+        rings
+    }
 }
 
 /// What a closed line goes around, once or more often.
@@ -180,7 +236,7 @@ impl Edge {
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use super::{Edge, area, enclosed, hull, on_map, ring_area, union};
+    use super::{Edge, Segments, area, enclosed, hull, on_map, ring_area, union};
     use crate::coordinates::Site;
     use crate::planet::Shape;
     use crate::solve::footprint::Plane;
@@ -196,6 +252,22 @@ mod tests {
         let found = union(&[square(0.0, 0.0, 2e5), other, square(9e5, 0.0, 1e5)], 1.0);
         assert_eq!(found.len(), 2);
         assert!((area(&found) - 7e10).abs() < 1e4, "{}", area(&found));
+    }
+
+    #[test]
+    fn of_polygons_side_by_side_the_rim_is_left() {
+        let mut segments = Segments::default();
+        for x in 0..4_u8 {
+            for y in 0..4_u8 {
+                let corners = square(1e3 * f64::from(x) - 2e3, 1e3 * f64::from(y) - 2e3, 1e3);
+                for (one, next) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+                    segments.add(*one, next.map(|coordinate| if coordinate == 0.0 { -0.0 } else { coordinate }));
+                }
+            }
+        }
+        let rings = segments.into_rings();
+        assert!(rings.len() == 1 && rings[0].len() == 16, "{rings:?}");
+        assert!((ring_area(&rings[0]) - 16e6).abs() < 1.0);
     }
 
     #[test]
