@@ -1,4 +1,5 @@
-//! Flights of which no steps are kept, beside the same flights with their steps: every digit of the ends, the events and the peaks.
+//! Flights of which no steps are kept, with and without their peaks, beside the same flights with their steps: every digit of the ends, the events
+//! and the peaks.
 
 use std::fs;
 use std::path::Path;
@@ -7,9 +8,9 @@ use std::sync::atomic::AtomicBool;
 use proptest::prelude::*;
 use reentry::Scenario;
 use reentry::sensitivity::Moment;
-use reentry::simulate::{extremes, simulate};
+use reentry::simulate::{ends, extremes, simulate};
 use reentry::solve::flight::{Extent, SearchFlight};
-use reentry::trajectory::{EventPoint, FlightPoint};
+use reentry::trajectory::{Arrival, EventPoint, FlightPoint};
 use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
 use reentry_tests::cases::read_json;
 
@@ -36,11 +37,16 @@ fn same(scenario: &Scenario) -> usize {
     };
     // Debug output has all digits.
     let text = |value: &dyn std::fmt::Debug| format!("{value:?}");
-    assert_eq!(text(&alone.initial()), text(&off_track(&whole.initial())));
-    assert_eq!(text(&alone.last()), text(&off_track(&whole.last())));
-    assert_eq!(text(&alone.arrival()), text(&whole.arrival()));
+    let without_peaks = ends(scenario, &NEVER).unwrap();
+    for ends in [alone.ends(), &without_peaks] {
+        assert_eq!(text(&ends.initial()), text(&off_track(&whole.initial())));
+        assert_eq!(text(&ends.last()), text(&off_track(&whole.last())));
+        // What it cost to find the peaks is not among it.
+        let arrival = Arrival { statistics: whole.statistics(), ..*ends.arrival() };
+        assert_eq!(text(&arrival), text(whole.arrival()));
+    }
     assert_eq!(alone.termination(), whole.termination());
-    assert_eq!(alone.statistics(), whole.statistics());
+    assert_eq!(alone.ends().statistics(), whole.statistics());
     assert_eq!(text(&alone.peaks()), text(&whole.peaks()));
     let event_off_track = |EventPoint { event, before, after }: EventPoint| EventPoint {
         event,
@@ -48,7 +54,9 @@ fn same(scenario: &Scenario) -> usize {
         after: off_track(&after),
     };
     let events: Vec<_> = whole.events().map(event_off_track).collect();
-    assert_eq!(text(&alone.events().collect::<Vec<_>>()), text(&events));
+    for ends in [alone.ends(), &without_peaks] {
+        assert_eq!(text(&ends.events().collect::<Vec<_>>()), text(&events));
+    }
     events.len()
 }
 

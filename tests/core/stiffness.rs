@@ -369,6 +369,26 @@ fn venus() -> Case {
     }
 }
 
+/// A capsule back from the Moon whose lift turns it down to the vertical, where it fades: the flight is held there, against the rotation of the
+/// planet, the more firmly the narrower the cone is.
+fn dive() -> Case {
+    let start = FlightPath {
+        radius: 6_500_137.0,
+        longitude: 0.0,
+        geocentric_latitude: 0.1,
+        speed: 10_600.0,
+        flight_path_angle: -0.13,
+        heading: 0.5,
+    };
+    Case {
+        atmosphere: Atmosphere::Us76,
+        vehicle: vehicle(5500.0, 12.0, 0.39, 1.3),
+        control: Control::banked(std::f64::consts::PI),
+        initial_state: start.to_planet_fixed(),
+        ..target_2()
+    }
+}
+
 fn end(case: &Case) -> Arrival {
     arrival(&Scenario::new(case.clone()).unwrap(), &NEVER).unwrap()
 }
@@ -406,6 +426,22 @@ fn slow_falls_end_where_explicit_steps_end() {
             let is_cheap = end.statistics.evaluations * 5 < costs.evaluations;
             assert!(is_cheap || tolerance < 1e-12, "{:?} of {costs:?}", end.statistics);
         }
+    }
+}
+
+/// Near the vertical, steps are as long as lift that fades lets explicit ones be, and implicit where the tolerance lets those be longer. Rejected
+/// ones, in place of that, doubled the evaluations.
+#[test]
+fn lift_that_fades_near_the_vertical_makes_few_steps_fail() {
+    let exact = end(&with_tolerance(dive(), 1e-13));
+    for (tolerance, within, most) in [(1e-10, 1e-2, 2000), (1e-6, 20.0, 900)] {
+        let case = with_tolerance(dive(), tolerance);
+        let flown = end(&case);
+        let miss = (flown.state.position - exact.state.position).norm();
+        assert!(miss < within, "{miss:e} m at {tolerance:e}");
+        let Statistics { steps, rejected_steps, evaluations } = flown.statistics;
+        assert!(evaluations < most && rejected_steps * 3 < steps, "{:?} at {tolerance:e}", flown.statistics);
+        assert!(fly(&case).last().flight_path.flight_path_angle < -1.57, "the flight has not come to the vertical");
     }
 }
 

@@ -517,7 +517,7 @@ async fn faults_stand_where_they_are() {
 async fn a_target_out_of_time_is_no_failure() {
     let deadline = std::time::Duration::from_millis(500);
     let service = Service::with(Config { deadline, ..Config::default() });
-    // Hundreds of revolutions each.
+    // A thousand revolutions each.
     let slow = with_all(
         &target(),
         [
@@ -527,7 +527,7 @@ async fn a_target_out_of_time_is_no_failure() {
             ("/initial_state/speed", json!(7300)),
             ("/initial_state/flight_path_angle", json!(0)),
             ("/vary/0/between", json!([-0.5, 0.5])),
-            ("/stop", json!({"time": 1e6})),
+            ("/stop", json!({"time": 6e6})),
         ],
     );
     let answer = service.post("/target", &slow).await;

@@ -52,7 +52,7 @@ const SCALE_HEIGHTS_A_STEP: f64 = 10.0;
 /// Times of drag that a step may last; see [`Forces::longest_step`].
 const DRAG_TIMES_A_STEP: f64 = 1.5;
 /// Times in which lift turns the flight to the vertical that a step may last; see [`Forces::longest_step`].
-const FADE_TIMES_A_STEP: f64 = 3.0;
+const FADE_TIMES_A_STEP: f64 = 5.5;
 
 /// The forces on the vehicle: gravity, lift, drag, thrust and parachutes. The parameters may carry derivatives (dual numbers), or be those
 /// of several vehicles in the lanes of one computation.

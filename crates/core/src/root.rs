@@ -2,8 +2,9 @@
 
 /// Finds a zero of `function` between `a` and `b`, where it takes the values `fa` and `fb` of opposite sign (or zero).
 ///
-/// Inverse quadratic interpolation where it can be trusted, bisection elsewhere; ends where the zero is known to `resolution`
-/// or to that of `f64`, and after at most 200 evaluations. Returns the point with the smallest value that was seen.
+/// The straight line between the ends first, which most functions here nearly are; then inverse quadratic interpolation where it can be
+/// trusted, bisection elsewhere. Ends where the zero is known to `resolution` or to that of `f64`, and after at most 200 evaluations.
+/// Returns the point with the smallest value that was seen.
 ///
 /// # Reference
 /// T. R. Chandrupatla, A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
@@ -13,7 +14,8 @@ pub fn bracketed(mut function: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f
     if f1 == 0.0 || f2 == 0.0 {
         return if f1 == 0.0 { x1 } else { x2 };
     }
-    let mut part = 0.5;
+    let straight = f1 / (f1 - f2);
+    let mut part = if straight > 0.0 && straight < 1.0 { straight } else { 0.5 };
     for _ in 0..200 {
         let x = x1 + part * (x2 - x1);
         let f = function(x);

@@ -439,6 +439,14 @@ impl Scenario {
         Self { case: Case { solver, ..self.case.clone() }, ..*self }
     }
 
+    /// The same flight at this tolerance, if its own is finer: it takes fewer steps.
+    #[must_use]
+    pub fn no_finer_than(self, relative_tolerance: f64) -> Self {
+        let relative_tolerance = relative_tolerance.max(self.case.solver.relative_tolerance);
+        let solver = Solver { relative_tolerance, ..self.case.solver };
+        Self { case: Case { solver, ..self.case }, ..self }
+    }
+
     /// Whether the flight starts on the stop altitude, where it ends unless it leaves it upward.
     pub fn starts_on_stop_altitude(&self) -> bool {
         self.starts_on_stop_altitude

@@ -18,7 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::motion::{Formulation, Singularity, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{ForFormulation, FormulationIn, Phase, Scenario, dispatch};
-use crate::trajectory::{Arrival, Extremes, Flown, Instant, StoredStep, Trajectory, Warning};
+use crate::trajectory::{Arrival, Ends, Extremes, Flown, Instant, StoredStep, Trajectory, Warning};
 use flight::{Flight, FlightLog};
 use peak_tracker::PeakTracker;
 use step_view::StepView;
@@ -148,6 +148,14 @@ pub fn extremes(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Extrem
     record(scenario, Kept::Extremes, interrupt).map(|flown| Extremes::new(scenario.case().clone(), flown))
 }
 
+/// Flies the scenario like [`simulate`], but keeps nothing of the flight except its start, its end and its events.
+///
+/// # Errors
+/// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
+pub fn ends(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Ends, SimulationError> {
+    record(scenario, Kept::Ends, interrupt).map(|flown| Ends::new(scenario.case().clone(), flown))
+}
+
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and, but for events, allocates no memory.
 ///
 /// # Errors
@@ -183,6 +191,8 @@ enum Kept {
     Steps,
     /// Its start, its end, its events and its peaks alone.
     Extremes,
+    /// The same without its peaks, for which those of its start stand.
+    Ends,
 }
 
 fn record(scenario: &Scenario, kept: Kept, interrupt: &dyn Interrupt) -> Result<Flown, SimulationError> {
@@ -275,6 +285,9 @@ where
 
     fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError> {
         let Self { kept, interrupt, steps, peak_tracker, .. } = self;
+        if *kept == Kept::Ends {
+            return Ok(());
+        }
         peak_tracker.observe(view)?;
         if *kept == Kept::Extremes {
             return Ok(());
@@ -289,9 +302,11 @@ where
     }
 
     fn finish(self, flight: Flight<F, N>, arrival: Arrival) -> Result<Flown, SimulationError> {
-        let Self { start, steps, mut peak_tracker, .. } = self;
+        let Self { kept, start, steps, mut peak_tracker, .. } = self;
         let end = flight.instant();
-        peak_tracker.end(flight.motion.forces(), &end)?;
+        if kept != Kept::Ends {
+            peak_tracker.end(flight.motion.forces(), &end)?;
+        }
         let never_lifted = flight.is_held().then_some(Warning::NeverLifted { time: end.time });
         let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
         let FlightLog { mut phases, event_records, separations, warnings: others } = flight.log;

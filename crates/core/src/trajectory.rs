@@ -6,7 +6,7 @@ mod phases;
 mod sampling;
 mod stored_step;
 
-pub use extremes::Extremes;
+pub use extremes::{Ends, Extremes};
 pub use phases::{FlightPhase, PhaseStart};
 pub use sampling::{Sampling, TooManyInstants};
 

@@ -1,6 +1,6 @@
 //! The values of one number of a case with which flights keep limits: bands, and the gaps between them.
 //!
-//! The number is sampled evenly. Intervals are halved in which a margin changes much, or flights end in other ways; between samples of which one
+//! The number is sampled evenly. Intervals are halved in which a margin changes much, and some in which flights end in other ways; between samples of which one
 //! keeps all limits and the other does not, the end of the band is bracketed.
 
 use crate::root::bracketed;
@@ -23,6 +23,8 @@ pub struct Sample {
 /// The limits of which a sample is to tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked<'a> {
+    /// All of them, roughly: what is looked at between the ends of bands, and drawn.
+    Roughly,
     /// All of them.
     All,
     /// These, by their places. Of the others a sample may have the margin [`Sample::NOT_ASKED`].
@@ -33,7 +35,7 @@ impl Asked<'_> {
     /// Whether a limit is among them.
     pub fn has(&self, limit: usize) -> bool {
         match self {
-            Self::All => true,
+            Self::Roughly | Self::All => true,
             Self::Only(limits) => limits.contains(&limit),
         }
     }
@@ -85,8 +87,10 @@ pub struct Corridor {
 
 /// Intervals into which the range is divided at first.
 const INTERVALS: usize = 32;
-/// How often an interval is halved at most.
+/// How often an interval is halved at most,
 const HALVINGS: usize = 8;
+/// and where flights end otherwise, and no margin changes much.
+const HALVINGS_FOR_ENDS: usize = 4;
 /// The change of a margin above which an interval is halved.
 const MUCH: f64 = 0.3;
 /// Margins count up to here, either way.
@@ -105,21 +109,21 @@ pub fn corridor<E>(
     resolution: f64,
     mut judge: impl FnMut(f64, Asked) -> Result<Sample, E>,
 ) -> Result<Corridor, E> {
-    let mut judge_all = |value: f64| judge(value, Asked::All);
+    let mut judge_roughly = |value: f64| judge(value, Asked::Roughly);
     let mut samples = Vec::with_capacity(2 * INTERVALS);
     for index in 0..=INTERVALS {
         #[expect(clippy::cast_precision_loss, reason = "a handful")]
         let part = index as f64 / INTERVALS as f64;
         // The end itself, and no rounding beyond it.
         let value = if index == INTERVALS { greatest } else { least + part * (greatest - least) };
-        samples.push(judge_all(value)?);
+        samples.push(judge_roughly(value)?);
     }
-    for _ in 0..HALVINGS {
-        samples = halved(samples, &mut judge_all)?;
+    for round in 0..HALVINGS {
+        samples = halved(samples, round, &mut judge_roughly)?;
     }
     let is_kept = |samples: &[Sample]| samples.iter().any(Sample::keeps_all);
     if !is_kept(&samples) {
-        climb(&mut samples, NEAREST * (greatest - least), &mut judge_all)?;
+        climb(&mut samples, NEAREST * (greatest - least), &mut |value| judge(value, Asked::All))?;
     }
     let nearest =
         (!is_kept(&samples)).then(|| best(&samples)).map(|best| (samples[best].value, samples[best].worst().1));
@@ -129,13 +133,17 @@ pub fn corridor<E>(
 }
 
 /// The samples, and those in the middle of intervals that are to be halved.
-fn halved<E>(samples: Vec<Sample>, judge: &mut impl FnMut(f64) -> Result<Sample, E>) -> Result<Vec<Sample>, E> {
+fn halved<E>(
+    samples: Vec<Sample>,
+    round: usize,
+    judge: &mut impl FnMut(f64) -> Result<Sample, E>,
+) -> Result<Vec<Sample>, E> {
     let mut count = samples.len();
     let mut finer: Vec<Sample> = Vec::with_capacity(2 * count);
     for sample in samples {
         if let Some(before) = finer.last()
             && count < MOST_SAMPLES
-            && before.differs_much(&sample)
+            && (before.differs_much(&sample) || round < HALVINGS_FOR_ENDS && before.ends != sample.ends)
         {
             let middle = judge(0.5 * (before.value + sample.value))?;
             finer.push(middle);
@@ -293,9 +301,7 @@ impl Sample {
 
     /// Whether there may be more between two samples than they show.
     fn differs_much(&self, other: &Self) -> bool {
-        let changes =
-            self.margins.iter().zip(&other.margins).any(|(one, other)| (cut(*one) - cut(*other)).abs() > MUCH);
-        changes || self.ends != other.ends
+        self.margins.iter().zip(&other.margins).any(|(one, other)| (cut(*one) - cut(*other)).abs() > MUCH)
     }
 }
 

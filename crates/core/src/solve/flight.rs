@@ -4,13 +4,15 @@ use crate::integrate::Statistics;
 use crate::interrupt::Interrupt;
 use crate::scenario::Scenario;
 use crate::sensitivity::{Moment, point_at};
-use crate::simulate::{BodyError, Flights, SimulationError, extremes, simulate, simulate_with_bodies};
-use crate::trajectory::{Extremes, FlightPoint, Peaks, Termination, Trajectory};
+use crate::simulate::{BodyError, Flights, SimulationError, ends, extremes, simulate, simulate_with_bodies};
+use crate::trajectory::{Ends, Extremes, FlightPoint, Peaks, Termination, Trajectory};
 
 /// What a search asks of its flights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Extent {
-    /// Their starts, ends, events and peaks.
+    /// Their starts, ends and events.
+    Ends,
+    /// The same and their peaks.
     Extremes,
     /// Their states at any time, and what is measured along the ground track.
     Whole,
@@ -21,6 +23,8 @@ pub enum Extent {
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub enum SearchFlight {
+    /// Its ends.
+    Ends(Ends),
     /// Its extremes.
     Extremes(Extremes),
     /// All of it.
@@ -32,6 +36,8 @@ pub enum SearchFlight {
 /// The flight of the vehicle or of a body, as far as the search has kept it.
 #[derive(Clone, Copy, Debug)]
 pub enum KeptFlight<'a> {
+    /// Its ends.
+    Ends(&'a Ends),
     /// Its extremes.
     Extremes(&'a Extremes),
     /// All of it.
@@ -45,6 +51,7 @@ impl SearchFlight {
     /// Those of [`simulate_with_bodies`].
     pub fn fly(scenario: &Scenario, extent: Extent, interrupt: &dyn Interrupt) -> Result<Self, BodyError> {
         Ok(match extent {
+            Extent::Ends => Self::Ends(ends(scenario, interrupt)?),
             Extent::Extremes => Self::Extremes(extremes(scenario, interrupt)?),
             Extent::Whole => Self::Whole(simulate(scenario, interrupt)?),
             Extent::WithBodies => Self::WithBodies(simulate_with_bodies(scenario, interrupt)?),
@@ -54,6 +61,7 @@ impl SearchFlight {
     /// The flight of the vehicle.
     pub fn vehicle(&self) -> KeptFlight<'_> {
         match self {
+            Self::Ends(flight) => KeptFlight::Ends(flight),
             Self::Extremes(flight) => KeptFlight::Extremes(flight),
             Self::Whole(flight) => KeptFlight::Whole(flight),
             Self::WithBodies(flights) => KeptFlight::Whole(&flights.vehicle),
@@ -71,7 +79,8 @@ impl SearchFlight {
     /// What the integration cost, that of all bodies included.
     pub fn statistics(&self) -> Statistics {
         match self {
-            Self::Extremes(flight) => flight.statistics(),
+            Self::Ends(flight) => flight.statistics(),
+            Self::Extremes(flight) => flight.ends().statistics(),
             Self::Whole(flight) => flight.statistics(),
             Self::WithBodies(flights) => {
                 flights.all().map(Trajectory::statistics).fold(Statistics::default(), |sum, one| Statistics {
@@ -88,16 +97,18 @@ impl KeptFlight<'_> {
     /// How the flight ended.
     pub fn termination(self) -> Termination {
         match self {
+            Self::Ends(flight) => flight.termination(),
             Self::Extremes(flight) => flight.termination(),
             Self::Whole(flight) => flight.termination(),
         }
     }
 
-    /// The greatest values over the flight.
-    pub fn peaks(&self) -> &Peaks {
+    /// The greatest values over the flight; none where they are not kept.
+    pub fn peaks(&self) -> Option<&Peaks> {
         match self {
-            Self::Extremes(flight) => flight.peaks(),
-            Self::Whole(flight) => flight.peaks(),
+            Self::Ends(_) => None,
+            Self::Extremes(flight) => Some(flight.peaks()),
+            Self::Whole(flight) => Some(flight.peaks()),
         }
     }
 
@@ -105,13 +116,14 @@ impl KeptFlight<'_> {
     /// with the equatorial radius; none where the flight starts vertically or at rest.
     pub fn range_of_end(self) -> Option<[f64; 2]> {
         match self {
-            Self::Extremes(flight) => flight.range_of_end(),
+            Self::Ends(flight) => flight.range_of_end(),
+            Self::Extremes(flight) => flight.ends().range_of_end(),
             Self::Whole(flight) => flight.range_of_end(),
         }
     }
 
     /// The point at a moment: at that of a peak, or of what is lowest, where `value` is; none where the flight has no such moment, and of
-    /// extremes none at a time, at a peak and at what is lowest.
+    /// ends and extremes none at a time, at a peak and at what is lowest.
     ///
     /// # Errors
     /// When the flag is raised.
@@ -122,7 +134,8 @@ impl KeptFlight<'_> {
         interrupt: &dyn Interrupt,
     ) -> Result<Option<FlightPoint>, SimulationError> {
         let flight = match self {
-            Self::Extremes(flight) => flight,
+            Self::Ends(flight) => flight,
+            Self::Extremes(flight) => flight.ends(),
             Self::Whole(flight) => return point_at(flight, at, value, interrupt),
         };
         Ok(match at {

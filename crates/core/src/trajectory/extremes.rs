@@ -1,16 +1,16 @@
-//! A finished flight of which nothing is kept between its start, its events, its peaks and its end.
+//! A finished flight of which nothing is kept between its start, its events, its end and, where they are asked for, its peaks.
 
 use super::{Arrival, EventPoint, FlightPoint, Flown, Peaks, Termination, Trajectory};
 use crate::integrate::Statistics;
 use crate::scenario::Case;
 
-/// A finished flight of which the start, the end, the events and the peaks are known, to the same digits as those of a [`Trajectory`].
+/// A finished flight of which the start, the end and the events are known, to the same digits as those of a [`Trajectory`].
 ///
 /// What is measured along the ground track is not known: of its points the downrange is none, and the ground distance not a number.
 #[derive(Clone, Debug)]
-pub struct Extremes(Trajectory);
+pub struct Ends(Trajectory);
 
-impl Extremes {
+impl Ends {
     pub(crate) fn new(case: Case, flown: Flown) -> Self {
         Self(Trajectory::unexamined(case, flown))
     }
@@ -28,11 +28,6 @@ impl Extremes {
     /// What the integration cost.
     pub fn statistics(&self) -> Statistics {
         self.0.statistics()
-    }
-
-    /// The greatest values over the flight.
-    pub fn peaks(&self) -> &Peaks {
-        self.0.peaks()
     }
 
     /// The initial state, as given: before what happens at t = 0.
@@ -56,6 +51,41 @@ impl Extremes {
             before: without_track(&before),
             after: without_track(&after),
         })
+    }
+}
+
+/// The same with the peaks.
+#[derive(Clone, Debug)]
+pub struct Extremes(Ends);
+
+impl Extremes {
+    pub(crate) fn new(case: Case, flown: Flown) -> Self {
+        Self(Ends::new(case, flown))
+    }
+
+    /// What is known of it without the peaks.
+    pub fn ends(&self) -> &Ends {
+        &self.0
+    }
+
+    /// The greatest values over the flight.
+    pub fn peaks(&self) -> &Peaks {
+        self.0.0.peaks()
+    }
+
+    /// How the flight ended.
+    pub fn termination(&self) -> Termination {
+        self.0.termination()
+    }
+
+    /// Where and how it ended.
+    pub fn arrival(&self) -> &Arrival {
+        self.0.arrival()
+    }
+
+    /// The final state, after what happens then.
+    pub fn last(&self) -> FlightPoint {
+        self.0.last()
     }
 }
 

@@ -39,6 +39,9 @@ pub fn corridor(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiErr
     Ok(Answer { body: out.whole(written)?, work: Work { search, ..flights.work() } })
 }
 
+/// The tolerance of flights that are drawn: their numbers have five digits.
+const SAMPLE_TOLERANCE: f64 = 1e-6;
+
 /// Flies a value once for every group of limits of which one is asked for.
 fn judge(
     groups: &mut [LimitGroup],
@@ -55,7 +58,8 @@ fn judge(
             }
             continue;
         }
-        let Flight::Finished(flown) = flights.fly(case, &[value], *extent)? else {
+        let tolerance = if asked == Asked::Roughly { SAMPLE_TOLERANCE } else { 0.0 };
+        let Flight::Finished(flown) = flights.fly_no_finer_than(tolerance, case, &[value], *extent)? else {
             sample.ends.push(None);
             continue;
         };

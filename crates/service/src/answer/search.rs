@@ -61,11 +61,26 @@ impl<'a> Flights<'a> {
     /// # Errors
     /// When the flag is raised, or there is no memory.
     pub(super) fn fly(&mut self, case: &mut MovingCase, values: &[f64], extent: Extent) -> Result<Flight, ApiError> {
+        self.fly_no_finer_than(0.0, case, values, extent)
+    }
+
+    /// The same at a tolerance, or at that of the case where that is coarser.
+    ///
+    /// # Errors
+    /// Those of [`fly`](Self::fly).
+    pub(super) fn fly_no_finer_than(
+        &mut self,
+        relative_tolerance: f64,
+        case: &mut MovingCase,
+        values: &[f64],
+        extent: Extent,
+    ) -> Result<Flight, ApiError> {
         self.begin();
         let Some((known, scenario)) = case.scenario(values) else {
             self.fail(ApiError::Invalid(Vec::new()).problem().kind);
             return Ok(Flight::Failed);
         };
+        let scenario = scenario.no_finer_than(relative_tolerance);
         let limited = Limited { interrupt: self.interrupt, until: self.until };
         match SearchFlight::fly(&scenario, extent, &limited) {
             Ok(flown) => {

@@ -2,7 +2,7 @@
 
 use reentry::elementary::cos;
 use reentry::event::{Condition, Direction, Quantity, Trigger};
-use reentry::simulate::{SimulationError, extremes};
+use reentry::simulate::{SimulationError, ends};
 use reentry::solve::corridor::{Asked, Sample, corridor};
 use reentry::trajectory::Termination;
 use reentry::{Case, FlightPath, Interrupt, Scenario};
@@ -129,7 +129,7 @@ impl Pass {
         let path = FlightPath { flight_path_angle, ..FlightPath::from_planet_fixed(&self.case.initial_state) };
         let case = Case { initial_state: path.to_planet_fixed(), ..self.case.clone() };
         let Ok(scenario) = Scenario::new(case) else { return Ok(None) };
-        let flight = match extremes(&scenario, interrupt) {
+        let flight = match ends(&scenario, interrupt) {
             Ok(flight) if flight.termination() == Termination::Condition(0) => flight,
             Err(error @ SimulationError::Interrupted { .. }) => return Err(error.into()),
             _ => return Ok(None),

@@ -157,7 +157,7 @@ fn groups(limits: &[AskedLimit], request: &SimulateRequest, numbers: &Numbers, m
     for (index, limit) in limits.iter().enumerate() {
         let with = limit.numbers(numbers);
         let place = groups.iter().position(|(of_group, _)| *of_group == with).unwrap_or_else(|| {
-            let group = LimitGroup { case: moving.with(&with), extent: Extent::Extremes, limits: Vec::new() };
+            let group = LimitGroup { case: moving.with(&with), extent: Extent::Ends, limits: Vec::new() };
             groups.push((with, group));
             groups.len() - 1
         });
@@ -328,7 +328,7 @@ pub struct CorridorResponse {
     /// Value with which the worst margin is best; null if there is a band.
     #[schema(required = true)]
     pub nearest: Option<NearestValue>,
-    /// Values that were flown, except those that locate the ends of bands.
+    /// Values that were flown, except those that locate the ends of bands; at a relative tolerance of 1e-6, or the case's where that is coarser.
     pub samples: CorridorSamples,
     /// Greatest distance of neighbouring samples in the gaps: a narrower band may have been missed.
     pub narrowest: f64,

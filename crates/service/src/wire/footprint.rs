@@ -129,7 +129,7 @@ impl FootprintRequest {
         let extents = numbers.iter().map(WantedNumber::extent).chain(ends.iter().map(WantedEnd::extent));
         Ok(Self {
             case: MovingCase::new(case, varied),
-            extent: extents.max().unwrap_or(Extent::Extremes),
+            extent: extents.max().unwrap_or(Extent::Ends),
             numbers,
             ends,
             options: asked.options,

@@ -261,7 +261,7 @@ pub struct WantedEnd {
 impl WantedEnd {
     /// What a flight must keep for it.
     pub fn extent(&self) -> Extent {
-        if self.body.is_some() { Extent::WithBodies } else { Extent::Extremes }
+        if self.body.is_some() { Extent::WithBodies } else { Extent::Ends }
     }
 
     /// Whether a flight ends so; a body that did not leave has no end.
@@ -392,13 +392,13 @@ impl WantedNumber {
             return Extent::WithBodies;
         }
         let is_at_instant = matches!(self.at, Moment::Start | Moment::End | Moment::Event { .. });
+        // What is measured along the way is only known of all of it.
         let is_kept = match &self.source {
-            Source::Peak(_) => true,
-            // What is measured along the way is only known of all of it.
+            Source::Peak(_) => return Extent::Extremes,
             Source::Column(column) => is_at_instant && !["downrange", "ground_distance"].contains(&column.name),
             Source::Apoapsis(..) | Source::East(_) | Source::North(_) | Source::Distance(_) => is_at_instant,
         };
-        if is_kept { Extent::Extremes } else { Extent::Whole }
+        if is_kept { Extent::Ends } else { Extent::Whole }
     }
 
     /// The requirement on the number as it is shown.
@@ -441,7 +441,7 @@ impl WantedNumber {
         let shape = &known.planet.shape;
         let of_column = |column: &'static Column| move |point: &FlightPoint| column.number(point, self.unit, known);
         Ok(match &self.source {
-            Source::Peak(peak) => both(peak(flown.peaks()).map(|peak| peak.value)),
+            Source::Peak(peak) => both(flown.peaks().and_then(|peaks| peak(peaks)).map(|peak| peak.value)),
             Source::Column(column) => {
                 let value = of_column(column);
                 both(flown.point(self.at, &value, interrupt)?.and_then(|point| value(&point)))

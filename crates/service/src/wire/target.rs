@@ -127,7 +127,7 @@ impl TargetRequest {
         let equations: Vec<_> = asked.achieve.iter().enumerate().flat_map(numbers_of).collect();
         let ends: Vec<_> = asked.achieve.iter().filter_map(|requirement| requirement.end(&request.events)).collect();
         let of_numbers = equations.iter().map(|(_, number)| number.extent());
-        let extent = of_numbers.chain(ends.iter().map(WantedEnd::extent)).max().unwrap_or(Extent::Extremes);
+        let extent = of_numbers.chain(ends.iter().map(WantedEnd::extent)).max().unwrap_or(Extent::Ends);
         let tolerance = FINE.min(request.solver.relative_tolerance);
         let case = MovingCase::new(case, varied);
         Ok(Self {

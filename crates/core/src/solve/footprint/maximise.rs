@@ -19,7 +19,7 @@ pub(super) trait Objective<E> {
 /// By how much more than the value what is off the line, or breaks a limit, counts.
 const PENALTY: f64 = 10.0;
 /// The first radius of the region of trust, in parts of the ranges, the greatest, and that at which the search ends.
-const RADII: [f64; 3] = [0.1, 0.3, 1e-3];
+const RADII: [f64; 3] = [0.1, 0.3, 3e-4];
 /// The step of the differences, in parts of the ranges.
 const DIFFERENCE: f64 = 1e-5;
 /// The margin that a step is to leave, since limits are not as straight as their slopes.
