@@ -448,11 +448,14 @@ fn searches() {
     let corridor = |text: &str| answer::corridor(json::parse(text.as_bytes()).unwrap(), &NEVER).unwrap();
     let footprint =
         |text: &str| answer::footprint(json::parse(text.as_bytes()).unwrap(), Format::Json, None, &NEVER).unwrap();
+    let two_bank_angles = include_str!("../../openapi/examples/footprint.json");
+    let finer = two_bank_angles.replace("\"resolution\": 2000", "\"resolution\": 500");
     for (name, text, search) in [
         ("landing site", include_str!("../../openapi/examples/target.json"), &target as &dyn Fn(&str) -> Answer),
         ("boundary values of TARGET", include_str!("../../openapi/examples/boundary_values.json"), &target),
         ("corridor of a lunar return", include_str!("../../openapi/examples/corridor.json"), &corridor),
-        ("footprint by two bank angles", include_str!("../../openapi/examples/footprint.json"), &footprint),
+        ("footprint by two bank angles, at 2 km", two_bank_angles, &footprint),
+        ("the same at 500 m", &finer, &footprint),
     ] {
         let answer: Value = serde_json::from_slice(&search(text).body).unwrap();
         let [seconds] = medians(SEARCHES, [&mut timed(|| search(black_box(text)))]);

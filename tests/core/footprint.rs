@@ -115,7 +115,7 @@ fn an_area_is_that_of_a_dense_grid() {
     }
     let expected = counted(&triangles, 2000);
     assert!((found.area / expected - 1.0).abs() < 1e-3, "{} is not {expected}", found.area);
-    assert!(found.flights.len() < 8000, "{} flights", found.flights.len());
+    assert!(found.flights.len() < 2500, "{} flights", found.flights.len());
 }
 
 /// Whether a point is in an outline, by how often a ray from it crosses the rings.

@@ -163,7 +163,8 @@ impl Mesh {
     pub(super) fn refine<E>(&mut self, survey: &mut Survey<E>, resolution: f64) -> Result<(), Halt<E>> {
         self.resolution = resolution;
         self.foresee_first(survey);
-        for round in 0..=MOST_ROUNDS {
+        let mut round = 0;
+        loop {
             let near = Edge::of(&self.covered(survey, &self.triangles), NEAR * resolution);
             let flown = survey.flights.len();
             // In their order, so that the same request flies the same flights.
@@ -172,13 +173,17 @@ impl Mesh {
                 halved.extend(self.edges_to_halve(survey, triangle, &near, round == 0)?);
             }
             self.examined.clone_from(&self.triangles);
-            // What was flown may have moved the edge of the union.
-            if halved.is_empty() && survey.flights.len() == flown || round == MOST_ROUNDS {
-                break;
+            if !halved.is_empty() {
+                if round == MOST_ROUNDS {
+                    return Ok(());
+                }
+                self.divide(survey, halved)?;
+                round += 1;
+            } else if survey.flights.len() == flown {
+                return Ok(());
             }
-            self.divide(survey, halved)?;
+            // Otherwise what was flown may have moved the edge of the union.
         }
-        Ok(())
     }
 
     /// Foresees the bends of the first edges, whose middles were flown, by the edges of twice their length between the same flights.
