@@ -441,7 +441,7 @@ impl WantedNumber {
         let shape = &known.planet.shape;
         let of_column = |column: &'static Column| move |point: &FlightPoint| column.number(point, self.unit, known);
         Ok(match &self.source {
-            Source::Peak(peak) => both(flown.peaks().and_then(|peaks| peak(peaks)).map(|peak| peak.value)),
+            Source::Peak(peak) => both(flown.peaks().and_then(peak).map(|peak| peak.value)),
             Source::Column(column) => {
                 let value = of_column(column);
                 both(flown.point(self.at, &value, interrupt)?.and_then(|point| value(&point)))
