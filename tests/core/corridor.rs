@@ -40,9 +40,9 @@ fn judged(value: f64) -> Sample {
 fn a_corridor_is_that_of_an_even_scan() {
     let between = [-12.0, -3.0];
     let mut flights = 0;
-    let found: Corridor = corridor(between, 1e-8, |value, asked| {
-        flights += [0, 1].into_iter().filter(|limit| asked.has(*limit)).count();
-        Ok::<_, ()>(judged(value))
+    let found: Corridor = corridor(between, 1e-8, |values, asked| {
+        flights += values.len() * [0, 1].into_iter().filter(|limit| asked.has(*limit)).count();
+        Ok::<_, ()>(values.iter().map(|value| judged(*value)).collect())
     })
     .unwrap();
     let [band] = found.bands[..] else { panic!("{:?}", found.bands) };

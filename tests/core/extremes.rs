@@ -88,7 +88,8 @@ proptest! {
         let scenario = Scenario::new(case).unwrap();
         let whole = simulate(&scenario, &NEVER).unwrap();
         let altitude = |point: &FlightPoint| Some(point.loads.altitude);
-        let [kept, all] = [Extent::Extremes, Extent::Whole].map(|extent| SearchFlight::fly(&scenario, extent, &NEVER).unwrap());
+        let fly = |extent| SearchFlight::fly_all(std::slice::from_ref(&scenario), extent, &NEVER).remove(0).unwrap();
+        let [kept, all] = [Extent::Extremes, Extent::Whole].map(fly);
         let point = |flown: &SearchFlight, at| flown.vehicle().point(at, &altitude, &NEVER).unwrap();
         prop_assert_eq!(point(&all, Moment::End).unwrap(), whole.last());
         prop_assert_eq!(point(&all, Moment::Start).unwrap(), whole.initial());

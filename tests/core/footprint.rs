@@ -44,7 +44,7 @@ fn survey(between: &[[f64; 2]], resolution: f64, limit: f64, case: impl Fn(&[f64
         Number { between: *between, scale: greatest - least, start: 0.5 * (least + greatest), is_cyclic: false }
     };
     let numbers: Vec<_> = between.iter().map(number).collect();
-    let mut fly = |values: &[f64]| Ok::<_, ()>(Some(outcome(case(values), limit)));
+    let mut fly = |values: &[Vec<f64>]| Ok::<_, ()>(values.iter().map(|values| outcome(case(values), limit)).collect());
     let options = Options { resolution: Some(resolution), flights: 20_000 };
     footprint(&numbers, &glide().planet.shape, options, &mut fly).unwrap()
 }

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use reentry::simulate::{arrival, arrivals, extremes, extremes_of_all};
+use reentry::simulate::{arrival, arrivals, ends, ends_of_all, extremes, extremes_of_all};
 use reentry::{Case, Scenario, Solver};
 use reentry_service::wire::json;
 use reentry_service::wire::scenario::{FlightRequest, RequestedOutput};
@@ -33,11 +33,13 @@ fn agree(cases: Vec<Case>) {
     let bounded =
         |case: Case| Case { solver: Solver { step_limit: case.solver.step_limit.min(3000), ..case.solver }, ..case };
     let scenarios: Vec<_> = cases.into_iter().filter_map(|case| Scenario::new(bounded(case)).ok()).collect();
-    let ends = arrivals(&scenarios, &NEVER);
+    let arrived = arrivals(&scenarios, &NEVER);
+    let ended = ends_of_all(&scenarios, &NEVER);
     let flights = extremes_of_all(&scenarios, &NEVER);
     for (index, scenario) in scenarios.iter().enumerate() {
         let told = || format!("of {} flights, that of {:?}", scenarios.len(), scenario.case());
-        assert_eq!(format!("{:?}", ends[index]), format!("{:?}", arrival(scenario, &NEVER)), "{}", told());
+        assert_eq!(format!("{:?}", arrived[index]), format!("{:?}", arrival(scenario, &NEVER)), "{}", told());
+        assert_eq!(format!("{:?}", ended[index]), format!("{:?}", ends(scenario, &NEVER)), "{}", told());
         assert_eq!(format!("{:?}", flights[index]), format!("{:?}", extremes(scenario, &NEVER)), "{}", told());
     }
 }

@@ -182,7 +182,7 @@ fn search(kind: &Kind, start: [f64; 2], known: &Known) -> (Target, usize) {
         Goal { searched: requirement, shown: requirement }
     });
     let mut flights = 0;
-    let mut flown = |values: &[f64], accuracy: Accuracy| {
+    let mut outcome = |values: &[f64], accuracy: Accuracy| {
         flights += 1;
         let case = (kind.case)([values[0], values[1]]);
         let case = if accuracy == Accuracy::Fine { with_tolerance(case, 1e-12) } else { case };
@@ -191,7 +191,10 @@ fn search(kind: &Kind, start: [f64; 2], known: &Known) -> (Target, usize) {
         let misses = known.misses(&flight, &shape);
         let numbers = misses.map_or(vec![None; 2], |misses| misses.map(Some).to_vec());
         let end = Some(flight.termination());
-        Ok::<_, ()>(Some(Outcome { end, counts: misses.is_some(), searched: numbers.clone(), shown: numbers }))
+        Outcome { end, counts: misses.is_some(), searched: numbers.clone(), shown: numbers }
+    };
+    let mut flown = |values: &[Vec<f64>], accuracy: Accuracy| {
+        Ok::<_, ()>(values.iter().map(|values| outcome(values, accuracy)).collect())
     };
     let found = target(&[number(0), number(1)], &goals, OPTIONS, &mut flown).unwrap();
     (found, flights)

@@ -11,7 +11,7 @@ mod step_view;
 mod stop_altitude;
 
 pub use bodies::{BodyError, Flights, SeparatedBody, simulate_with_bodies};
-pub use lanes::{arrivals, extremes_of_all};
+pub use lanes::{arrivals, ends_of_all, extremes_of_all};
 
 use crate::integrate::{AnyStep, Step};
 use crate::interrupt::Interrupt;

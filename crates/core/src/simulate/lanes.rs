@@ -1,13 +1,13 @@
 //! Many flights at once, in the lanes of one computation.
 
 use super::flight::Flight;
-use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, extremes};
+use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, record};
 use crate::integrate::{AnyStep, LaneSteps, Step, System};
 use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, Forces, Formulation};
 use crate::scalar::Lanes;
-use crate::scenario::{Equations, Scenario, StateLayout};
-use crate::trajectory::{Arrival, Extremes};
+use crate::scenario::{Case, Equations, Scenario, StateLayout};
+use crate::trajectory::{Arrival, Ends, Extremes, Flown};
 
 /// So many flights share a computation.
 const LANES: usize = 8;
@@ -28,18 +28,30 @@ pub fn arrivals(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result
 
 /// Flies scenarios as [`arrivals`] does, and keeps of each what [`extremes`](super::extremes) does.
 pub fn extremes_of_all(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Extremes, SimulationError>> {
+    flown_of_all(scenarios, Kept::Extremes, interrupt, Extremes::new)
+}
+
+/// Flies scenarios as [`arrivals`] does, and keeps of each what [`ends`](super::ends) does.
+pub fn ends_of_all(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Ends, SimulationError>> {
+    flown_of_all(scenarios, Kept::Ends, interrupt, Ends::new)
+}
+
+/// Flies scenarios, and makes what is wanted of what is kept of them.
+fn flown_of_all<T>(
+    scenarios: &[Scenario],
+    kept: Kept,
+    interrupt: &dyn Interrupt,
+    of: fn(Case, Flown) -> T,
+) -> Vec<Result<T, SimulationError>> {
     let mut outcomes = Outcomes::new(scenarios);
-    outcomes.fill_in_lanes::<6, _>(StateLayout::Motion, interrupt, |flight| {
-        Recorder::new(flight, Kept::Extremes, interrupt)
-    });
-    outcomes.fill_in_lanes::<7, _>(StateLayout::HeatLoad, interrupt, |flight| {
-        Recorder::new(flight, Kept::Extremes, interrupt)
-    });
+    outcomes.fill_in_lanes::<6, _>(StateLayout::Motion, interrupt, |flight| Recorder::new(flight, kept, interrupt));
+    outcomes.fill_in_lanes::<7, _>(StateLayout::HeatLoad, interrupt, |flight| Recorder::new(flight, kept, interrupt));
     outcomes.fill_in_lanes::<8, _>(StateLayout::HeatLoadAndMass, interrupt, |flight| {
-        Recorder::new(flight, Kept::Extremes, interrupt)
+        Recorder::new(flight, kept, interrupt)
     });
-    let outcomes = outcomes.map(|scenario, flown| Extremes::new(scenario.case().clone(), flown));
-    outcomes.complete(|scenario| extremes(scenario, interrupt))
+    let flown = outcomes.complete(|scenario| record(scenario, kept, interrupt));
+    let of = |(scenario, flown): (&Scenario, Result<_, _>)| flown.map(|flown| of(scenario.case().clone(), flown));
+    scenarios.iter().zip(flown).map(of).collect()
 }
 
 /// What is known of each scenario.
@@ -85,14 +97,6 @@ impl<'a, T> Outcomes<'a, T> {
             groups: Vec::new(),
         };
         scheduler.fly();
-    }
-
-    fn map<U>(self, to: impl Fn(&Scenario, T) -> U) -> Outcomes<'a, U> {
-        let Self { scenarios, known } = self;
-        let map = |(scenario, outcome): (&Scenario, Option<Result<T, _>>)| {
-            outcome.map(|outcome| outcome.map(|outcome| to(scenario, outcome)))
-        };
-        Outcomes { scenarios, known: scenarios.iter().zip(known).map(map).collect() }
     }
 
     /// All outcomes, of which those that are not known yet are flown alone.

@@ -100,58 +100,61 @@ const MOST_SAMPLES: usize = 1000;
 /// The part of the range to which the best value is located where there is no band.
 const NEAREST: f64 = 1e-6;
 
-/// The bands within a range, whose ends are located to `resolution`. `judge` flies a value for the limits that are asked for.
+/// The bands within a range, whose ends are located to `resolution`. `judge` flies all of several values for the limits that are asked for.
 ///
 /// # Errors
 /// Those of `judge`.
 pub fn corridor<E>(
     [least, greatest]: [f64; 2],
     resolution: f64,
-    mut judge: impl FnMut(f64, Asked) -> Result<Sample, E>,
+    mut judge: impl FnMut(&[f64], Asked) -> Result<Vec<Sample>, E>,
 ) -> Result<Corridor, E> {
-    let mut judge_roughly = |value: f64| judge(value, Asked::Roughly);
-    let mut samples = Vec::with_capacity(2 * INTERVALS);
-    for index in 0..=INTERVALS {
+    let value = |index: usize| {
         #[expect(clippy::cast_precision_loss, reason = "a handful")]
         let part = index as f64 / INTERVALS as f64;
         // The end itself, and no rounding beyond it.
-        let value = if index == INTERVALS { greatest } else { least + part * (greatest - least) };
-        samples.push(judge_roughly(value)?);
-    }
+        if index == INTERVALS { greatest } else { least + part * (greatest - least) }
+    };
+    let values: Vec<_> = (0..=INTERVALS).map(value).collect();
+    let mut samples = judge(&values, Asked::Roughly)?;
     for round in 0..HALVINGS {
-        samples = halved(samples, round, &mut judge_roughly)?;
+        let middles = middles(&samples, round);
+        if middles.is_empty() {
+            break;
+        }
+        samples.extend(judge(&middles, Asked::Roughly)?);
+        samples.sort_by(|one, other| one.value.total_cmp(&other.value));
     }
     let is_kept = |samples: &[Sample]| samples.iter().any(Sample::keeps_all);
     if !is_kept(&samples) {
-        climb(&mut samples, NEAREST * (greatest - least), &mut |value| judge(value, Asked::All))?;
+        climb(&mut samples, NEAREST * (greatest - least), &mut |value| judged(&mut judge, value, Asked::All))?;
     }
     let nearest =
         (!is_kept(&samples)).then(|| best(&samples)).map(|best| (samples[best].value, samples[best].worst().1));
     let mut corridor = Corridor { bands: Vec::new(), gaps: Vec::new(), samples, nearest, narrowest: 0.0 };
-    corridor.divide(resolution, &mut judge)?;
+    corridor.divide(resolution, &mut |value, asked| judged(&mut judge, value, asked))?;
     Ok(corridor)
 }
 
-/// The samples, and those in the middle of intervals that are to be halved.
-fn halved<E>(
-    samples: Vec<Sample>,
-    round: usize,
-    judge: &mut impl FnMut(f64) -> Result<Sample, E>,
-) -> Result<Vec<Sample>, E> {
-    let mut count = samples.len();
-    let mut finer: Vec<Sample> = Vec::with_capacity(2 * count);
-    for sample in samples {
-        if let Some(before) = finer.last()
-            && count < MOST_SAMPLES
-            && (before.differs_much(&sample) || round < HALVINGS_FOR_ENDS && before.ends != sample.ends)
-        {
-            let middle = judge(0.5 * (before.value + sample.value))?;
-            finer.push(middle);
-            count += 1;
-        }
-        finer.push(sample);
-    }
-    Ok(finer)
+/// The sample of one value.
+fn judged<E>(
+    judge: &mut impl FnMut(&[f64], Asked) -> Result<Vec<Sample>, E>,
+    value: f64,
+    asked: Asked,
+) -> Result<Sample, E> {
+    // What is not known counts as broken.
+    let unknown = || Sample { value, numbers: vec![None], margins: vec![None], ends: Vec::new() };
+    Ok(judge(&[value], asked)?.pop().unwrap_or_else(unknown))
+}
+
+/// The middles of the intervals that are to be halved.
+fn middles(samples: &[Sample], round: usize) -> Vec<f64> {
+    let is_to_halve = |before: &Sample, after: &Sample| {
+        before.differs_much(after) || round < HALVINGS_FOR_ENDS && before.ends != after.ends
+    };
+    let pairs = samples.windows(2).filter(|pair| is_to_halve(&pair[0], &pair[1]));
+    let middles = pairs.map(|pair| 0.5 * (pair[0].value + pair[1].value));
+    middles.take(MOST_SAMPLES.saturating_sub(samples.len())).collect()
 }
 
 /// The place of the sample whose worst margin is best.
@@ -316,10 +319,13 @@ mod tests {
 
     fn of(margins: impl Fn(f64) -> Vec<f64>, between: [f64; 2]) -> (Corridor, usize) {
         let mut flights = 0;
-        let judge = |value: f64, _: Asked| {
-            flights += 1;
-            let margins: Vec<_> = margins(value).into_iter().map(Some).collect();
-            Ok::<_, ()>(Sample { value, numbers: margins.clone(), margins, ends: Vec::new() })
+        let judge = |values: &[f64], _: Asked| {
+            flights += values.len();
+            let sample = |value: &f64| {
+                let margins: Vec<_> = margins(*value).into_iter().map(Some).collect();
+                Sample { value: *value, numbers: margins.clone(), margins, ends: Vec::new() }
+            };
+            Ok::<_, ()>(values.iter().map(sample).collect())
         };
         let found = corridor(between, 1e-9 * (between[1] - between[0]), judge);
         (found.unwrap_or_else(|()| unreachable!("no flight fails")), flights)
@@ -356,14 +362,17 @@ mod tests {
     fn at_the_ends_of_bands_limits_are_flown_that_may_end_them() {
         let check = |second: fn(f64) -> f64, ends: [f64; 2], limits: [usize; 2], most: usize| {
             let mut flights = [0, 0];
-            let judge = |value: f64, asked: Asked| {
-                let margins = [value - 0.2003, second(value)];
-                let margin = |limit: usize| {
-                    flights[limit] += usize::from(asked.has(limit));
-                    if asked.has(limit) { Some(margins[limit]) } else { Sample::NOT_ASKED }
+            let judge = |values: &[f64], asked: Asked| {
+                let sample = |value: &f64| {
+                    let margins = [value - 0.2003, second(*value)];
+                    let margin = |limit: usize| {
+                        flights[limit] += usize::from(asked.has(limit));
+                        if asked.has(limit) { Some(margins[limit]) } else { Sample::NOT_ASKED }
+                    };
+                    let margins: Vec<_> = [0, 1].map(margin).to_vec();
+                    Sample { value: *value, numbers: margins.clone(), margins, ends: Vec::new() }
                 };
-                let margins: Vec<_> = [0, 1].map(margin).to_vec();
-                Ok::<_, ()>(Sample { value, numbers: margins.clone(), margins, ends: Vec::new() })
+                Ok::<_, ()>(values.iter().map(sample).collect())
             };
             let found = corridor([0.0, 1.0], 1e-9, judge).unwrap_or_else(|()| unreachable!("no flight fails"));
             let [band] = found.bands[..] else { panic!("{:?}", found.bands) };

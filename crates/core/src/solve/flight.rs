@@ -4,7 +4,9 @@ use crate::integrate::Statistics;
 use crate::interrupt::Interrupt;
 use crate::scenario::Scenario;
 use crate::sensitivity::{Moment, point_at};
-use crate::simulate::{BodyError, Flights, SimulationError, ends, extremes, simulate, simulate_with_bodies};
+use crate::simulate::{
+    BodyError, Flights, SimulationError, ends_of_all, extremes_of_all, simulate, simulate_with_bodies,
+};
 use crate::trajectory::{Ends, Extremes, FlightPoint, Peaks, Termination, Trajectory};
 
 /// What a search asks of its flights.
@@ -45,17 +47,26 @@ pub enum KeptFlight<'a> {
 }
 
 impl SearchFlight {
-    /// Flies a scenario.
+    /// Flies scenarios, in lanes where of their steps nothing is kept: each is as it would be alone.
     ///
     /// # Errors
     /// Those of [`simulate_with_bodies`].
-    pub fn fly(scenario: &Scenario, extent: Extent, interrupt: &dyn Interrupt) -> Result<Self, BodyError> {
-        Ok(match extent {
-            Extent::Ends => Self::Ends(ends(scenario, interrupt)?),
-            Extent::Extremes => Self::Extremes(extremes(scenario, interrupt)?),
-            Extent::Whole => Self::Whole(simulate(scenario, interrupt)?),
-            Extent::WithBodies => Self::WithBodies(simulate_with_bodies(scenario, interrupt)?),
-        })
+    pub fn fly_all(scenarios: &[Scenario], extent: Extent, interrupt: &dyn Interrupt) -> Vec<Result<Self, BodyError>> {
+        fn each<T>(
+            flown: Vec<Result<T, SimulationError>>,
+            of: fn(T) -> SearchFlight,
+        ) -> Vec<Result<SearchFlight, BodyError>> {
+            flown.into_iter().map(|flown| Ok(of(flown?))).collect()
+        }
+        match extent {
+            Extent::Ends => each(ends_of_all(scenarios, interrupt), Self::Ends),
+            Extent::Extremes => each(extremes_of_all(scenarios, interrupt), Self::Extremes),
+            Extent::Whole => scenarios.iter().map(|scenario| Ok(Self::Whole(simulate(scenario, interrupt)?))).collect(),
+            Extent::WithBodies => {
+                let fly = |scenario| Ok(Self::WithBodies(simulate_with_bodies(scenario, interrupt)?));
+                scenarios.iter().map(fly).collect()
+            }
+        }
     }
 
     /// The flight of the vehicle.

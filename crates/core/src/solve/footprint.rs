@@ -92,7 +92,7 @@ const FINEST: f64 = 1e-2;
 /// The place in the family of scrambled sequences: any is as good.
 const SEED: u32 = 1;
 
-/// Surveys where flights land. `fly` flies numbers; it gives none once the time is over.
+/// Surveys where flights land. `fly` flies numbers, and fewer once the time is over.
 ///
 /// # Errors
 /// Those of `fly`.
@@ -138,17 +138,14 @@ impl<E> State<'_, '_, E> {
         let mut curve = Vec::new();
         match survey.numbers.len() {
             1 => {
-                for index in 0..SCAN[0] {
-                    curve.push(survey.fly(vec![f64::from(index) / f64::from(SCAN[0] - 1)])?);
-                }
+                let places = (0..SCAN[0]).map(|index| vec![f64::from(index) / f64::from(SCAN[0] - 1)]);
+                curve.extend(survey.fly_all(places.collect())?);
             }
             2 => self.outline = Outline::Mesh(Box::new(Mesh::scan(survey)?)),
             count => {
                 #[expect(clippy::cast_possible_truncation, reason = "eight numbers at most")]
                 let place = |index| (0..count as u32).map(move |axis| f64::from(sample(index, axis, SEED)));
-                for index in 0..SCAN[1] {
-                    survey.fly(place(index).collect())?;
-                }
+                survey.fly_all((0..SCAN[1]).map(|index| place(index).collect()).collect())?;
             }
         }
         self.scan = 1..survey.flights.len();
@@ -340,7 +337,7 @@ mod tests {
     ) -> Footprint {
         let shape = Planet::EARTH_WGS84.shape;
         let plane = Plane::about(&centre, &shape);
-        let mut fly = |values: &[f64]| {
+        let outcome = |values: &Vec<f64>| {
             let landed = map(values);
             let landing = landed.map(|([x, y], _)| Landing {
                 site: plane.site([1e3 * x, 1e3 * y]),
@@ -348,8 +345,9 @@ mod tests {
                 crossrange: Some(1e3 * y),
             });
             let end = Some(if landed.is_some() { Termination::SurfaceImpact } else { Termination::AtmosphereExit });
-            Ok::<_, ()>(Some(Outcome { end, landing, margin: landed.map_or(f64::INFINITY, |landed| landed.1) }))
+            Outcome { end, landing, margin: landed.map_or(f64::INFINITY, |landed| landed.1) }
         };
+        let mut fly = |all: &[Vec<f64>]| Ok::<_, ()>(all.iter().map(outcome).collect());
         let options = Options { resolution: Some(resolution), flights: 20_000 };
         footprint(numbers, &shape, options, &mut fly).unwrap_or_else(|()| unreachable!("no flight fails"))
     }
@@ -415,12 +413,13 @@ mod tests {
         let shape = Planet::EARTH_WGS84.shape;
         let plane = Plane::about(&PLACES[0], &shape);
         let numbers = [number(-1.0, 1.0), number(-1.0, 1.0)];
-        let mut fly = |values: &[f64]| {
+        let outcome = |values: &Vec<f64>| {
             let site = plane.site([0, 1].map(|axis| 1e5 * values[axis]));
             let landing = Some(Landing { site, downrange: None, crossrange: None });
             let margin = 0.49 - values[0] * values[0] - values[1] * values[1];
-            Ok::<_, ()>(Some(Outcome { end: Some(Termination::SurfaceImpact), landing, margin }))
+            Outcome { end: Some(Termination::SurfaceImpact), landing, margin }
         };
+        let mut fly = |all: &[Vec<f64>]| Ok::<_, ()>(all.iter().map(outcome).collect());
         let mut of = |flights: usize| {
             let options = Options { resolution: Some(1.0), flights };
             let found =

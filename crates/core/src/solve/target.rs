@@ -91,7 +91,7 @@ const DISTINCT: f64 = 1e-4;
 /// Where all flights together change a number by less than this part of its miss, nothing that varies changes it.
 const INSENSITIVE: f64 = 1e-2;
 
-/// Searches for numbers with which all goals are met. `fly` flies numbers; it gives none once the time is over.
+/// Searches for numbers with which all goals are met. `fly` flies numbers, and fewer once the time is over.
 ///
 /// # Errors
 /// Those of `fly`.
@@ -281,15 +281,16 @@ mod tests {
         function: impl Fn(&[f64]) -> Result<Vec<f64>, Termination>,
     ) -> (Target, usize) {
         let mut flights = 0;
-        let mut fly = |values: &[f64], _: Accuracy| {
+        let mut outcome = |values: &Vec<f64>| {
             flights += 1;
             let given = function(values);
             let end = given.as_ref().err().copied().unwrap_or(Termination::StopAltitude);
             let counts = given.is_ok();
             let numbers: Vec<_> =
                 given.map_or_else(|_| vec![None; goals.len()], |given| given.into_iter().map(Some).collect());
-            Ok::<_, ()>(Some(Outcome { end: Some(end), counts, searched: numbers.clone(), shown: numbers }))
+            Outcome { end: Some(end), counts, searched: numbers.clone(), shown: numbers }
         };
+        let mut fly = |all: &[Vec<f64>], _: Accuracy| Ok::<_, ()>(all.iter().map(&mut outcome).collect());
         let found = target(numbers, goals, options, &mut fly).unwrap_or_else(|()| unreachable!("no flight fails"));
         (found, flights)
     }

@@ -2,11 +2,13 @@
 
 use reentry::Interrupt;
 use reentry::solve::corridor::{Asked, Corridor, Edge, Sample, corridor as divide};
+use reentry::solve::flight::SearchFlight;
 use serde_json::Value;
 
-use super::search::{Flight, Flights};
+use super::search::Flights;
 use super::{Answer, HeldMemory, Work, Written};
 use crate::error::ApiError;
+use crate::wire::columns::AvailableQuantities;
 use crate::wire::corridor::{CorridorFlight, CorridorRequest, CorridorResponse, Limit, LimitGroup};
 
 /// Finds the values of a number with which flights keep limits; `interrupt` ends it early, wherever it is.
@@ -18,7 +20,7 @@ pub fn corridor(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiErr
     let mut flights = Flights::new(interrupt, None);
     let (between, resolution, limits) = (asked.varied.between, asked.resolution, asked.limits);
     let groups = &mut asked.groups;
-    let judge = |value: f64, asked: Asked| judge(groups, (value, asked), limits, &mut flights, interrupt);
+    let judge = |values: &[f64], asked: Asked| judge(groups, (values, asked), limits, &mut flights, interrupt);
     let found: Corridor = divide(between, resolution, judge)?;
     let mut flights_of = |edge: &Edge| {
         let mut flight = |group: &mut LimitGroup| {
@@ -42,42 +44,60 @@ pub fn corridor(tree: Value, interrupt: &dyn Interrupt) -> Result<Answer, ApiErr
 /// The tolerance of flights that are drawn: their numbers have five digits.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
-/// Flies a value once for every group of limits of which one is asked for.
+/// Flies all of several values, each once for every group of limits of which one is asked for.
 fn judge(
     groups: &mut [LimitGroup],
-    (value, asked): (f64, Asked),
+    (values, asked): (&[f64], Asked),
     limits: usize,
     flights: &mut Flights,
     interrupt: &dyn Interrupt,
-) -> Result<Sample, ApiError> {
-    let mut sample = Sample { value, numbers: vec![None; limits], margins: vec![None; limits], ends: Vec::new() };
+) -> Result<Vec<Sample>, ApiError> {
+    let unjudged = |value: &f64| Sample {
+        value: *value,
+        numbers: vec![None; limits],
+        margins: vec![None; limits],
+        ends: Vec::new(),
+    };
+    let mut samples: Vec<_> = values.iter().map(unjudged).collect();
+    let values: Vec<_> = values.iter().map(|value| vec![*value]).collect();
+    let tolerance = if asked == Asked::Roughly { SAMPLE_TOLERANCE } else { 0.0 };
     for LimitGroup { case, extent, limits } in groups {
         if !limits.iter().any(|(limit, _)| asked.has(*limit)) {
-            for (limit, _) in &*limits {
-                sample.margins[*limit] = Sample::NOT_ASKED;
+            for sample in &mut samples {
+                for (limit, _) in &*limits {
+                    sample.margins[*limit] = Sample::NOT_ASKED;
+                }
             }
             continue;
         }
-        let tolerance = if asked == Asked::Roughly { SAMPLE_TOLERANCE } else { 0.0 };
-        let Flight::Finished(flown) = flights.fly_no_finer_than(tolerance, case, &[value], *extent)? else {
-            sample.ends.push(None);
-            continue;
-        };
-        let (known, flown) = *flown;
-        sample.ends.push(Some(flown.vehicle().termination()));
-        for (index, limit) in limits {
-            match limit {
-                Limit::Ends(end) => {
-                    let is_kept = end.is_met(&flown);
-                    sample.margins[*index] = Some(if is_kept { 1.0 } else { -1.0 });
-                }
-                Limit::Number(number) => {
-                    let reading = number.reading(&flown, &known, interrupt)?;
-                    sample.numbers[*index] = reading.shown;
-                    sample.margins[*index] = reading.searched.map(|value| number.searched().margin(value));
-                }
+        let flown = flights.fly_all(tolerance, case, &values, *extent)?;
+        for (sample, flight) in samples.iter_mut().zip(flown) {
+            sample.ends.push(flight.as_ref().map(|flight| flight.1.vehicle().termination()));
+            let Some(flight) = flight else { continue };
+            judge_limits(sample, limits, &flight, interrupt)?;
+        }
+    }
+    Ok(samples)
+}
+
+/// Adds what a flight says of limits.
+fn judge_limits(
+    sample: &mut Sample,
+    limits: &[(usize, Limit)],
+    (known, flown): &(AvailableQuantities, SearchFlight),
+    interrupt: &dyn Interrupt,
+) -> Result<(), ApiError> {
+    for (index, limit) in limits {
+        match limit {
+            Limit::Ends(end) => {
+                sample.margins[*index] = Some(if end.is_met(flown) { 1.0 } else { -1.0 });
+            }
+            Limit::Number(number) => {
+                let reading = number.reading(flown, known, interrupt)?;
+                sample.numbers[*index] = reading.shown;
+                sample.margins[*index] = reading.searched.map(|value| number.searched().margin(value));
             }
         }
     }
-    Ok(sample)
+    Ok(())
 }

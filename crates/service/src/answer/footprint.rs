@@ -33,14 +33,13 @@ pub fn footprint(
     let mut flights = Flights::new(interrupt, until);
     let (numbers, options, shape) = (asked.numbers(), asked.options, asked.request.planet.core.shape);
     let near = downrange(&mut asked, &mut flights, interrupt)?;
-    let mut fly = |values: &[f64]| {
-        let flown = match flights.fly(&mut asked.case, values, asked.extent)? {
-            Flight::Finished(flown) => flown,
-            Flight::OutOfTime => return Ok(None),
-            Flight::Failed => return Ok(Some(Outcome { end: None, landing: None, margin: f64::NEG_INFINITY })),
+    let mut fly = |values: &[Vec<f64>]| {
+        let flown = flights.fly_all(0.0, &mut asked.case, values, asked.extent)?;
+        let outcome = |flight: Flight| match flight {
+            Some(flight) => asked.outcome(&flight.1, &flight.0, near, interrupt),
+            None => Ok(Outcome { end: None, landing: None, margin: f64::NEG_INFINITY }),
         };
-        let (known, flown) = *flown;
-        Ok::<_, ApiError>(Some(asked.outcome(&flown, &known, near, interrupt)?))
+        Ok::<_, ApiError>(flown.into_iter().map(outcome).collect::<Result<_, _>>()?)
     };
     let found = survey(&numbers, &shape, options, &mut fly)?;
     let response = FootprintResponse::new(asked, &found, flights.so_far());
@@ -56,7 +55,8 @@ pub fn footprint(
 /// The downrange of the case's own landing, m, with all its turns about the planet; 0 where it has none.
 fn downrange(asked: &mut FootprintRequest, flights: &mut Flights, interrupt: &dyn Interrupt) -> Result<f64, ApiError> {
     let own: Vec<_> = asked.case.varied().iter().map(|number| number.start).collect();
-    let Flight::Finished(flown) = flights.fly(&mut asked.case, &own, Extent::Whole)? else { return Ok(0.0) };
+    let flown = flights.fly_all(0.0, &mut asked.case, &[own], Extent::Whole)?.pop();
+    let Some(flown) = flown.flatten() else { return Ok(0.0) };
     let end = flown.1.vehicle().point(Moment::End, &|_| None, interrupt)?;
     Ok(end.and_then(|point| point.downrange).unwrap_or_default())
 }

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use reentry::Interrupt;
 use reentry::integrate::Statistics;
+use reentry::scenario::Scenario;
 use reentry::simulate::{BodyError, SimulationError, simulate};
 use reentry::solve::flight::{Extent, SearchFlight};
 
@@ -13,15 +14,11 @@ use crate::wire::columns::AvailableQuantities;
 use crate::wire::search::{FailedFlights, FlightSummary, FlightsOfSearch};
 use crate::wire::vary::MovingCase;
 
-/// What became of a flight.
-pub(super) enum Flight {
-    /// It is finished, and so much is known of it.
-    Finished(Box<(AvailableQuantities, SearchFlight)>),
-    /// It is of no sound case, or cannot be finished.
-    Failed,
-    /// The search must come to its end.
-    OutOfTime,
-}
+/// What became of a flight: it is finished, and so much is known of it; none where it is of no sound case, or cannot be finished.
+pub(super) type Flight = Option<Box<(AvailableQuantities, SearchFlight)>>;
+
+/// So many flights are read and flown at once: enough for lanes, and few enough to be held.
+const TOGETHER: usize = 96;
 
 /// Whoever asked for a search that must come to its end in time.
 #[derive(Debug)]
@@ -56,42 +53,54 @@ impl<'a> Flights<'a> {
         Self { interrupt, until, start: Instant::now(), count: 0, failed: Vec::new(), work: Work::default() }
     }
 
-    /// Flies a case with its numbers set.
+    /// Flies a case with all of several numbers set, one after the other, at a tolerance, or at that of the case where that is coarser. Gives fewer
+    /// flights where the search must come to its end.
     ///
     /// # Errors
     /// When the flag is raised, or there is no memory.
-    pub(super) fn fly(&mut self, case: &mut MovingCase, values: &[f64], extent: Extent) -> Result<Flight, ApiError> {
-        self.fly_no_finer_than(0.0, case, values, extent)
-    }
-
-    /// The same at a tolerance, or at that of the case where that is coarser.
-    ///
-    /// # Errors
-    /// Those of [`fly`](Self::fly).
-    pub(super) fn fly_no_finer_than(
+    pub(super) fn fly_all(
         &mut self,
         relative_tolerance: f64,
         case: &mut MovingCase,
-        values: &[f64],
+        values: &[Vec<f64>],
         extent: Extent,
-    ) -> Result<Flight, ApiError> {
-        self.begin();
-        let Some((known, scenario)) = case.scenario(values) else {
-            self.fail(ApiError::Invalid(Vec::new()).problem().kind);
-            return Ok(Flight::Failed);
-        };
-        let scenario = scenario.no_finer_than(relative_tolerance);
-        let limited = Limited { interrupt: self.interrupt, until: self.until };
-        match SearchFlight::fly(&scenario, extent, &limited) {
-            Ok(flown) => {
-                self.took(flown.statistics());
-                Ok(Flight::Finished(Box::new((known, flown))))
+    ) -> Result<Vec<Flight>, ApiError> {
+        let mut flights = Vec::with_capacity(values.len());
+        for together in values.chunks(TOGETHER) {
+            let mut scenarios = Vec::with_capacity(together.len());
+            let mut known = Vec::with_capacity(together.len());
+            for values in together {
+                self.begin();
+                let (of_flight, scenario) = case.scenario(values).unzip();
+                known.push(of_flight);
+                scenarios.extend(scenario.map(|scenario: Scenario| scenario.no_finer_than(relative_tolerance)));
             }
-            Err(BodyError { error: SimulationError::Interrupted { .. }, .. }) if !self.interrupt.is_raised() => {
-                Ok(Flight::OutOfTime)
+            let limited = Limited { interrupt: self.interrupt, until: self.until };
+            let mut flown = SearchFlight::fly_all(&scenarios, extent, &limited).into_iter();
+            for known in known {
+                let Some((known, flown)) = known.zip(flown.next()) else {
+                    self.fail(ApiError::Invalid(Vec::new()).problem().kind);
+                    flights.push(None);
+                    continue;
+                };
+                match flown {
+                    Ok(flown) => {
+                        self.took(flown.statistics());
+                        flights.push(Some(Box::new((known, flown))));
+                    }
+                    Err(BodyError { error: SimulationError::Interrupted { .. }, .. })
+                        if !self.interrupt.is_raised() =>
+                    {
+                        return Ok(flights);
+                    }
+                    Err(error) => {
+                        self.failed(error)?;
+                        flights.push(None);
+                    }
+                }
             }
-            Err(error) => self.failed(error).map(|()| Flight::Failed),
         }
+        Ok(flights)
     }
 
     /// Counts a flight.

@@ -19,29 +19,10 @@ pub fn target(tree: Value, until: Option<Instant>, interrupt: &dyn Interrupt) ->
     let mut asked = TargetRequest::try_from_tree(tree).map_err(ApiError::Invalid)?;
     let mut flights = Flights::new(interrupt, until);
     let (numbers, goals, options) = (asked.numbers(), asked.goals(), asked.options);
-    let mut fly = |values: &[f64], accuracy: Accuracy| {
+    let mut fly = |values: &[Vec<f64>], accuracy: Accuracy| {
         let case = if accuracy == Accuracy::Fine { &mut asked.fine } else { &mut asked.case };
-        let flown = match flights.fly(case, values, asked.extent)? {
-            Flight::Finished(flown) => flown,
-            Flight::OutOfTime => return Ok(None),
-            Flight::Failed => {
-                let none = vec![None; goals.len()];
-                return Ok(Some(Outcome { end: None, counts: false, searched: none.clone(), shown: none }));
-            }
-        };
-        let (known, flown) = *flown;
-        let mut outcome = Outcome {
-            end: Some(flown.vehicle().termination()),
-            counts: asked.counts(&flown),
-            searched: Vec::with_capacity(goals.len()),
-            shown: Vec::with_capacity(goals.len()),
-        };
-        for (_, number) in &asked.equations {
-            let reading = number.reading(&flown, &known, interrupt)?;
-            outcome.searched.push(reading.searched);
-            outcome.shown.push(reading.shown);
-        }
-        Ok::<_, ApiError>(Some(outcome))
+        let flown = flights.fly_all(0.0, case, values, asked.extent)?;
+        flown.into_iter().map(|flight| outcome(&asked, flight, interrupt)).collect()
     };
     let found = search_for(&numbers, &goals, options, &mut fly)?;
     let cost = std::cell::RefCell::new(flights);
@@ -52,4 +33,25 @@ pub fn target(tree: Value, until: Option<Instant>, interrupt: &dyn Interrupt) ->
     let written = serde_json::to_writer(&mut out, &response);
     let work = cost.borrow().work();
     Ok(Answer { body: out.whole(written)?, work: Work { search, ..work } })
+}
+
+/// What a flight gives.
+fn outcome(asked: &TargetRequest, flight: Flight, interrupt: &dyn Interrupt) -> Result<Outcome, ApiError> {
+    let Some(flight) = flight else {
+        let none = vec![None; asked.equations.len()];
+        return Ok(Outcome { end: None, counts: false, searched: none.clone(), shown: none });
+    };
+    let (known, flown) = *flight;
+    let mut outcome = Outcome {
+        end: Some(flown.vehicle().termination()),
+        counts: asked.counts(&flown),
+        searched: Vec::with_capacity(asked.equations.len()),
+        shown: Vec::with_capacity(asked.equations.len()),
+    };
+    for (_, number) in &asked.equations {
+        let reading = number.reading(&flown, &known, interrupt)?;
+        outcome.searched.push(reading.searched);
+        outcome.shown.push(reading.shown);
+    }
+    Ok(outcome)
 }

@@ -98,7 +98,7 @@ impl Pass {
         interrupt: &dyn Interrupt,
     ) -> Result<[f64; 2], ApiError> {
         let middle = 0.5 * (between[0] + between[1]);
-        let judge = |value: f64, _: Asked| {
+        let judge = |value: f64| {
             // What lands is deep within the limit of the one, and far beyond that of the other.
             let relative = |pass: &Self| {
                 let reciprocal = pass.reciprocal_apoapsis(value.to_radians(), interrupt)?;
@@ -116,7 +116,8 @@ impl Pass {
             let margins = margins.map(Some).to_vec();
             Ok::<_, ApiError>(Sample { value, numbers: vec![None; 2], margins, ends: Vec::new() })
         };
-        let found = corridor(between, RESOLUTION, judge)?;
+        let judge_all = |values: &[f64], _: Asked| values.iter().map(|value| judge(*value)).collect::<Result<_, _>>();
+        let found = corridor(between, RESOLUTION, judge_all)?;
         Ok(match found.bands[..] {
             [band] if (band.from.limit, band.to.limit) == (Some(1), Some(0)) => [band.to.value, band.from.value],
             _ => [f64::NAN; 2],

@@ -121,26 +121,27 @@ impl Mesh {
             cuts: HashMap::new(),
         };
         let part = |index: u32| f64::from(index) / f64::from(INTERVALS);
-        let mut rows: Vec<Vec<FlightIndex>> = Vec::new();
-        for up in 0..=INTERVALS {
-            let mut row = Vec::new();
-            for right in 0..=INTERVALS {
-                row.push(mesh.flown(survey, vec![part(right), part(up)])?);
-            }
-            rows.push(row);
-        }
+        let row = |up: u32| (0..=INTERVALS).map(move |right| vec![part(right), part(up)]);
+        let flights = mesh.all_flown(survey, (0..=INTERVALS).flat_map(row).collect())?;
+        let rows: Vec<_> = flights.chunks(INTERVALS as usize + 1).collect();
         for pair in rows.windows(2) {
             for (below, above) in pair[0].windows(2).zip(pair[1].windows(2)) {
                 mesh.triangles.extend([[below[0], below[1], above[1]], [below[0], above[1], above[0]]]);
             }
         }
         // The flights in the middle of the edges show what is narrower than the triangles.
-        for triangle in mesh.triangles.clone() {
-            for edge in edges(triangle) {
-                mesh.middle(survey, edge)?;
-            }
-        }
+        let edges: BTreeSet<_> = mesh.triangles.iter().flat_map(|triangle| edges(*triangle)).collect();
+        let middles = edges.into_iter().map(|[one, other]| survey.between(one, other, 0.5)).collect();
+        mesh.all_flown(survey, middles)?;
         Ok(mesh)
+    }
+
+    /// The flights at several places, none of which was flown before.
+    fn all_flown<E>(&mut self, survey: &mut Survey<E>, places: Vec<Vec<f64>>) -> Result<Vec<FlightIndex>, Halt<E>> {
+        let parts: Vec<_> = places.iter().map(|place| parts(place)).collect();
+        let flights = survey.fly_all(places)?;
+        self.by_place.extend(parts.into_iter().zip(flights.clone()));
+        Ok(flights.collect())
     }
 
     /// The flight at a place, which is flown once.

@@ -1,5 +1,7 @@
 //! The flights of a footprint, and where they landed.
 
+use std::ops::Range;
+
 use super::plane::{Plane, Point};
 use crate::coordinates::Site;
 use crate::elementary::hypot;
@@ -29,8 +31,8 @@ pub struct Outcome {
     pub margin: f64,
 }
 
-/// Flies numbers; none once the time is over.
-pub type Fly<'a, E> = dyn FnMut(&[f64]) -> Result<Option<Outcome>, E> + 'a;
+/// Flies all of several numbers; fewer of them once the time is over.
+pub type Fly<'a, E> = dyn FnMut(&[Vec<f64>]) -> Result<Vec<Outcome>, E> + 'a;
 
 /// Why a survey ends early.
 pub(super) enum Halt<E> {
@@ -72,16 +74,25 @@ impl<'a, E> Survey<'a, E> {
 
     /// Flies a place of the range.
     pub(super) fn fly(&mut self, place: Vec<f64>) -> Result<FlightIndex, Halt<E>> {
-        self.left = self.left.checked_sub(1).ok_or(Halt::Budget)?;
-        let values = self.values(&place);
-        let outcome = (self.fly)(&values).map_err(Halt::Failed)?.ok_or(Halt::Budget)?;
-        if let Some(end) = outcome.end
-            && !self.ends.contains(&end)
-        {
-            self.ends.push(end);
+        self.fly_all(vec![place]).map(|flights| flights.start)
+    }
+
+    /// Flies several places of the range at once; gives the range of their flights.
+    pub(super) fn fly_all(&mut self, mut places: Vec<Vec<f64>>) -> Result<Range<FlightIndex>, Halt<E>> {
+        let (first, count) = (self.flights.len(), places.len());
+        places.truncate(self.left);
+        self.left -= places.len();
+        let values: Vec<_> = places.iter().map(|place| self.values(place)).collect();
+        let outcomes = (self.fly)(&values).map_err(Halt::Failed)?;
+        for (place, outcome) in places.into_iter().zip(outcomes) {
+            if let Some(end) = outcome.end
+                && !self.ends.contains(&end)
+            {
+                self.ends.push(end);
+            }
+            self.flights.push(Flight { place, outcome });
         }
-        self.flights.push(Flight { place, outcome });
-        Ok(self.flights.len() - 1)
+        if self.flights.len() < first + count { Err(Halt::Budget) } else { Ok(first..first + count) }
     }
 
     /// The numbers at a place.

@@ -23,11 +23,9 @@ pub(super) fn scan<E>(search: &mut Search<E>, starts: usize) -> Result<Vec<Point
     let count = if starts > 0 { starts } else { STARTS[dimensions.clamp(1, STARTS.len()) - 1] };
     let start = search.start();
     let mut points = vec![search.flown(&start, Accuracy::OfCase)?];
-    for index in 0..count {
-        let place: Vec<f64> =
-            if dimensions == 1 { vec![even(index, count)] } else { low_discrepancy(index, dimensions) };
-        points.push(search.flown(&place, Accuracy::OfCase)?);
-    }
+    let place = |index| if dimensions == 1 { vec![even(index, count)] } else { low_discrepancy(index, dimensions) };
+    let places: Vec<_> = (0..count).map(place).collect();
+    points.extend(search.all_flown(places.iter().map(Vec::as_slice), Accuracy::OfCase)?);
     Ok(points)
 }
 

@@ -47,8 +47,8 @@ pub struct Outcome {
     pub shown: Vec<Option<f64>>,
 }
 
-/// Flies numbers; none once the time is over.
-pub type Fly<'a, E> = dyn FnMut(&[f64], Accuracy) -> Result<Option<Outcome>, E> + 'a;
+/// Flies all of several numbers; fewer of them once the time is over.
+pub type Fly<'a, E> = dyn FnMut(&[Vec<f64>], Accuracy) -> Result<Vec<Outcome>, E> + 'a;
 
 /// Why a search ends early.
 pub(super) enum Halt<E> {
@@ -148,10 +148,28 @@ impl<'a, E> Search<'a, E> {
 
     /// Flies a place, which is taken into the range first.
     pub(super) fn flown(&mut self, place: &[f64], accuracy: Accuracy) -> Result<Point, Halt<E>> {
-        self.left = self.left.checked_sub(1).ok_or(Halt::Budget)?;
-        let place = self.within(place);
-        let values = self.values(&place);
-        let outcome = (self.fly)(&values, accuracy).map_err(Halt::Failed)?.ok_or(Halt::Budget)?;
+        self.all_flown([place], accuracy)?.pop().ok_or(Halt::Budget)
+    }
+
+    /// The same of several places at once.
+    pub(super) fn all_flown<'p>(
+        &mut self,
+        places: impl IntoIterator<Item = &'p [f64]>,
+        accuracy: Accuracy,
+    ) -> Result<Vec<Point>, Halt<E>> {
+        let mut places: Vec<_> = places.into_iter().map(|place| self.within(place)).collect();
+        let count = places.len();
+        places.truncate(self.left);
+        self.left -= places.len();
+        let values: Vec<_> = places.iter().map(|place| self.values(place)).collect();
+        let outcomes = (self.fly)(&values, accuracy).map_err(Halt::Failed)?;
+        let points: Vec<_> =
+            places.into_iter().zip(outcomes).map(|(place, outcome)| self.noted(place, outcome)).collect();
+        if points.len() < count { Err(Halt::Budget) } else { Ok(points) }
+    }
+
+    /// Notes what a flight gave.
+    fn noted(&mut self, place: Vec<f64>, outcome: Outcome) -> Point {
         self.flights += 1;
         let Outcome { end, counts, searched, shown } = outcome;
         let residual = |(goal, number): (&Goal, &Option<f64>)| {
@@ -176,7 +194,7 @@ impl<'a, E> Search<'a, E> {
                 self.best = Some(point.clone());
             }
         }
-        Ok(point)
+        point
     }
 
     /// Flights beyond what the search may take, by which its end is told: as many as that needs.
