@@ -338,9 +338,27 @@ def test_a_service_that_talks_for_ever_has_no_health():
     assert asked(hold).returncode == 0
 
 
+def test_without_lanes_a_search_has_the_same_answer():
+    def answer(*arguments, **environment):
+        found = run("corridor", "openapi/examples/corridor.json", *arguments, **environment)
+        assert found.returncode == 0, found.stderr
+        return re.sub(r'"elapsed": ?[0-9.e-]+', "", found.stdout)
+
+    together = answer()
+    assert answer("--lanes", "0") == together
+    assert answer(REENTRY_LANES="0") == together
+    assert run("--version", REENTRY_LANES="0").stdout.endswith("lanes: none\n")
+    assert run("--lanes", "2", "planets").returncode == 2
+
+
 def test_the_program_tells_its_version_its_codes_and_its_document(service):
     version = json.loads(run("openapi").stdout)["info"]["version"]
-    assert run("--version").stdout == f"reentry {version}\n"
+    assert run("-V").stdout == f"reentry {version}\n"
+    first, lanes = run("--version").stdout.splitlines()
+    assert first == f"reentry {version}"
+    assert lanes in ("lanes: avx512", "lanes: avx2", "lanes: none")
+    build = next(line for line in service.get("/metrics").body.decode().splitlines() if line.startswith("reentry_build_info{"))
+    assert f'lanes="{lanes.removeprefix("lanes: ")}"' in build
     assert json.loads(run("openapi").stdout) == json.loads(service.get("/openapi.json").body)
     for arguments in [["--help"], ["simulate", "--help"], ["convert", "--help"], ["validate", "--help"]]:
         text = run(*arguments).stdout

@@ -14,7 +14,7 @@ mod step;
 mod step_control;
 mod tableau;
 
-pub use lanes::{LaneSteps, lane_instructions};
+pub use lanes::{LaneSteps, lane_instructions, use_lanes};
 pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 

@@ -7,14 +7,16 @@ pub mod licences;
 mod output;
 pub mod validate;
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::LazyLock;
+use std::{env, fs};
 
 use clap::error::ContextValue;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
+use reentry::integrate::{lane_instructions, use_lanes};
 
 use crate::answer;
 use crate::cli::cases::{Cases, States};
@@ -31,16 +33,42 @@ use crate::wire::space_weather::{self, Records};
 
 /// Simulates atmospheric entry: trajectories, landing points, loads and heating.
 #[derive(Debug, Parser)]
-#[command(name = "reentry", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "reentry", version, long_version = LONG_VERSION.as_str(), arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
     /// File of space-weather indices for cases with `"indices": "file"`: `SW-All.csv` or `SW-All.txt` of CelesTrak, or
     /// `Kp_ap_Ap_SN_F107_since_1932.txt` of the GFZ
     #[arg(long, global = true, env = "REENTRY_SPACE_WEATHER", value_name = "FILE")]
     pub space_weather: Option<PathBuf>,
 
+    /// Whether the flights of a search share the vector registers of the processor, where it has AVX2 or AVX-512: 0 or 1. The answers are the same
+    #[arg(long, global = true, env = LANES, value_name = "0|1", default_value = "1", action = ArgAction::Set, value_parser = lanes)]
+    pub lanes: bool,
+
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+}
+
+/// The environment variable by which lanes are turned off.
+const LANES: &str = "REENTRY_LANES";
+
+/// What `--version` says: the version, and the instructions of the lanes in which searches fly.
+static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
+    let are_off = env::var(LANES).is_ok_and(|text| lanes(&text) == Ok(false));
+    let instructions = lane_instructions().filter(|_| !are_off).unwrap_or("none");
+    format!("{}\nlanes: {instructions}", env!("CARGO_PKG_VERSION"))
+});
+
+/// Whether there are to be lanes.
+///
+/// # Errors
+/// With what the text must be.
+fn lanes(text: &str) -> Result<bool, String> {
+    match text {
+        "0" => Ok(false),
+        "1" => Ok(true),
+        _ => Err("must be 0 or 1".to_owned()),
+    }
 }
 
 /// What the program can do.
@@ -270,6 +298,7 @@ impl Cli {
     /// # Errors
     /// With what is to be said, unless it has been, and the code with which to end.
     pub fn run(self, serve: impl FnOnce(Config) -> Result<(), Failure>) -> Result<(), Failure> {
+        use_lanes(self.lanes);
         if let Some(path) = &self.space_weather {
             use_space_weather(path)?;
         }

@@ -13,6 +13,7 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::metrics::info::Info;
 use prometheus_client::registry::{Registry, Unit};
+use reentry::integrate::lane_instructions;
 
 /// The media type of the text.
 pub const MEDIA_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
@@ -128,8 +129,9 @@ impl Metrics {
     /// All zero, of a service with so many threads that compute.
     pub fn new(workers: usize) -> Self {
         let mut registry = Registry::with_prefix("reentry");
-        let build = Info::new([("version", env!("CARGO_PKG_VERSION"))]);
-        registry.register("build", "Version of the program", build);
+        let lanes = lane_instructions().unwrap_or("none");
+        let build = Info::new([("version", env!("CARGO_PKG_VERSION")), ("lanes", lanes)]);
+        registry.register("build", "Version of the program, and instructions of the lanes of searches", build);
         let all: Gauge = Gauge::default();
         all.set(signed(workers));
         registry.register("workers", "Worker threads", all);

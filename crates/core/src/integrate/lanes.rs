@@ -1,5 +1,7 @@
 //! Trial steps of several integrators at once, in the vector registers of the processor.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::{IntegrationError, Integrator, Step, StepBounds, System, step};
 use crate::scalar::Lanes;
 
@@ -20,11 +22,12 @@ pub struct LaneSteps<const N: usize, const L: usize> {
 }
 
 impl<const N: usize, const L: usize> LaneSteps<N, L> {
-    /// Lanes without integrators; none where the processor has no vectors of four numbers, and flights are faster one by one.
+    /// Lanes without integrators; none where the processor has no vectors of four numbers, and flights are faster one by one, and where lanes are
+    /// [turned off](use_lanes).
     pub fn new() -> Option<Self> {
         let none = Lanes([0.0; L]);
         Some(Self {
-            instructions: isa::widest()?,
+            instructions: widest()?,
             time: none,
             length: none,
             end_time: none,
@@ -81,9 +84,21 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
     }
 }
 
+/// Whether there are to be no lanes.
+static ARE_OFF: AtomicBool = AtomicBool::new(false);
+
+/// Turns lanes on or off for the whole program. Without them flights are flown one by one, to the same digits.
+pub fn use_lanes(are_on: bool) {
+    ARE_OFF.store(!are_on, Ordering::Relaxed);
+}
+
 /// The instructions by which lanes are computed; none where there are no [`LaneSteps`].
 pub fn lane_instructions() -> Option<&'static str> {
-    isa::widest().map(isa::InstructionSet::name)
+    widest().map(isa::InstructionSet::name)
+}
+
+fn widest() -> Option<isa::InstructionSet> {
+    if ARE_OFF.load(Ordering::Relaxed) { None } else { isa::widest() }
 }
 
 /// The instruction sets among which the processor decides when the program runs.

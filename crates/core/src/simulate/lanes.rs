@@ -13,6 +13,10 @@ use crate::trajectory::{Arrival, Ends, Extremes, Flown};
 const LANES: usize = 8;
 /// So many are under way at once, so that those of one mode are enough to fill the lanes.
 const UNDER_WAY: usize = 96;
+/// So few are not faster together: what the lanes compute for none costs as much.
+const FEW: usize = 2;
+/// So many kinds of forces are told apart among flights that begin.
+const MOST_KINDS: usize = 16;
 
 /// Flies scenarios to their ends: what [`arrival`](super::arrival) gives for each, to the last digit.
 ///
@@ -82,15 +86,12 @@ impl<'a, T> Outcomes<'a, T> {
         };
         let of_layout: Vec<usize> =
             (0..self.scenarios.len()).filter(|index| of_layout(&self.scenarios[*index])).collect();
-        // Two would not be faster together.
-        if of_layout.len() <= 2 {
-            return;
-        }
         let Some(steps) = LaneSteps::new() else { return };
+        let coming = with_like(self.scenarios, of_layout);
         let mut scheduler = Scheduler {
             outcomes: self,
             steps,
-            coming: of_layout.into_iter(),
+            coming: coming.into_iter(),
             interrupt,
             observer,
             under_way: Vec::new(),
@@ -104,6 +105,22 @@ impl<'a, T> Outcomes<'a, T> {
         let Self { scenarios, known } = self;
         scenarios.iter().zip(known).map(|(scenario, outcome)| outcome.unwrap_or_else(|| alone(scenario))).collect()
     }
+}
+
+/// Those of some scenarios that begin with the same forces as enough others, one kind after the other: of the rest, as where each has a schedule
+/// of its own, hardly any would ever share lanes.
+fn with_like(scenarios: &[Scenario], indices: Vec<usize>) -> Vec<usize> {
+    let mut kinds: Vec<(Forces, Vec<usize>)> = Vec::new();
+    for index in indices {
+        let forces = scenarios[index].case().forces();
+        match kinds.iter().position(|(of_kind, _)| of_kind.are_alike(&forces)) {
+            Some(kind) => kinds[kind].1.push(index),
+            None if kinds.len() < MOST_KINDS => kinds.push((forces, vec![index])),
+            None => {}
+        }
+    }
+    let many = kinds.into_iter().map(|(_, members)| members).filter(|members| members.len() > FEW);
+    many.flatten().collect()
 }
 
 /// Which flights fly in which lanes: those that are under way, and scenarios that are to come.
@@ -141,7 +158,13 @@ where
             let largest = (0..self.groups.len()).max_by_key(|group| self.groups[*group].len());
             let Some(largest) = largest else { return };
             let group = self.groups.swap_remove(largest);
-            self.fly_group(group);
+            if group.len() > FEW {
+                self.fly_group(group);
+            } else {
+                for place in group {
+                    self.fly_alone(place);
+                }
+            }
         }
     }
 
@@ -195,6 +218,19 @@ where
         false
     }
 
+    /// Flies the flight at a place alone until its forces change, and then lets it wait among its like.
+    fn fly_alone(&mut self, place: usize) {
+        let before = self.under_way[place].as_ref().map(|flying| flying.flight.phase_and_mode());
+        while let Some(Flying { flight, observer, .. }) = &mut self.under_way[place] {
+            if Some(flight.phase_and_mode()) != before {
+                break;
+            }
+            let passed = flight.advance().and_then(|step| flight.pass(&step, &mut |view| observer.observe(view)));
+            self.goes_on(place, passed);
+        }
+        self.wait(place);
+    }
+
     /// Lets a flight wait among its like; while it is stiff, it is flown alone.
     fn wait(&mut self, place: usize) {
         while let Some(Flying { flight, observer, .. }) = &mut self.under_way[place] {
@@ -241,6 +277,16 @@ where
                     system.0.put(lane, flying.flight.motion.forces());
                     *place = Some(next);
                 }
+            }
+            let flying = lanes.iter().flatten().count();
+            if flying <= FEW && waiting.is_empty() {
+                // The last ones are faster alone.
+                for place in lanes.into_iter().flatten() {
+                    self.fly_alone(place);
+                }
+                return;
+            }
+            for (lane, place) in lanes.iter_mut().enumerate() {
                 if let Some(at) = *place
                     && let Some(Flying { flight, .. }) = &mut self.under_way[at]
                 {
@@ -253,9 +299,6 @@ where
                 }
             }
             if lanes.iter().all(Option::is_none) {
-                if waiting.is_empty() {
-                    return;
-                }
                 continue;
             }
             self.steps.attempt(&system);
