@@ -93,6 +93,43 @@ async fn a_corridor_has_bands_gaps_and_samples() {
     assert!(answer["search"]["flights"].as_u64().unwrap() < 300, "{}", answer["search"]);
 }
 
+/// A schedule whose entries are not in order makes no case, and leaves the flights of the others theirs.
+#[tokio::test]
+async fn samples_that_are_no_case_leave_the_others_as_they_are() {
+    let service = Service::new();
+    let schedule = json!({"type": "schedule", "against": "time", "at": [0, 60, 90, 4000], "value": [0, 0, 60, 60]});
+    let case = with(&entry(), "/control/bank_angle", schedule);
+    let request = with_all(
+        &case,
+        [
+            ("/vary", json!({"pointer": "/control/bank_angle/at/2", "between": [40, 120]})),
+            ("/limits", json!([{"quantity": "crossrange", "at_least": 0}])),
+        ],
+    );
+    let answer = good_answer(&service, "/corridor", &request).await;
+    let values = numbers(&answer["samples"]["value"]);
+    let crossranges = answer["samples"]["limits"][0]["value"].as_array().unwrap();
+    let (mut unsound, mut flown) = (0, 0);
+    for (value, crossrange) in values.into_iter().zip(crossranges) {
+        if value <= 60.0 {
+            assert_eq!(crossrange, &Value::Null, "at {value}");
+            unsound += 1;
+        } else {
+            let alone = with_all(
+                &case,
+                [("/control/bank_angle/at/2", json!(value)), ("/solver", json!({"relative_tolerance": 1e-6}))],
+            );
+            let alone = good_answer(&service, "/simulate", &alone).await;
+            // Samples about the nearest value are flown at the case's tolerance; the flight of another sample lands kilometres away.
+            let off = crossrange.as_f64().unwrap() - alone["final_state"]["crossrange"].as_f64().unwrap();
+            assert!(off.abs() < 1.0, "{off} m at {value}");
+            flown += 1;
+        }
+    }
+    assert!(unsound > 5 && flown > 20, "{unsound} and {flown}");
+    assert_eq!(answer["search"]["failed"][0]["count"].as_u64().unwrap(), unsound, "{}", answer["search"]);
+}
+
 #[tokio::test]
 async fn without_a_band_the_nearest_value_is_told() {
     let service = Service::new();

@@ -78,11 +78,13 @@ impl<'a> Flights<'a> {
             let limited = Limited { interrupt: self.interrupt, until: self.until };
             let mut flown = SearchFlight::fly_all(&scenarios, extent, &limited).into_iter();
             for known in known {
-                let Some((known, flown)) = known.zip(flown.next()) else {
+                let Some(known) = known else {
                     self.fail(ApiError::Invalid(Vec::new()).problem().kind);
                     flights.push(None);
                     continue;
                 };
+                // Of every sound case there is one.
+                let Some(flown) = flown.next() else { return Ok(flights) };
                 match flown {
                     Ok(flown) => {
                         self.took(flown.statistics());

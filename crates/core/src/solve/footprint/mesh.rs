@@ -55,21 +55,21 @@ pub(super) struct Mesh {
 struct Bend {
     /// How far its middle is off that of its chord, m.
     sagitta: Point,
-    /// How far that is off what was foreseen, m; without bound where the middle does not keep the limits.
-    surprise: f64,
+    /// How far that is off what was foreseen, m, the hierarchical surplus; without bound where the middle does not keep the limits.
+    surplus: f64,
 }
 
 impl Bend {
     /// That of a half of the edge, or of an edge of half its length beside it.
     fn of_half(self) -> Self {
-        Self { sagitta: self.sagitta.map(|it| 0.25 * it), surprise: OF_HALVES * self.surprise }
+        Self { sagitta: self.sagitta.map(|it| 0.25 * it), surplus: OF_HALVES * self.surplus }
     }
 
     /// That of the line from a corner of a triangle to the middle of the edge `across`, where the triangle is quadratic.
     fn of_median(across: Self, one: Self, other: Self) -> Self {
         let sagitta = [0, 1].map(|axis| 0.5 * (one.sagitta[axis] + other.sagitta[axis]) - 0.25 * across.sagitta[axis]);
-        let surprise = OF_PARABOLA * across.surprise.max(one.surprise).max(other.surprise);
-        Self { sagitta, surprise }
+        let surplus = OF_PARABOLA * across.surplus.max(one.surplus).max(other.surplus);
+        Self { sagitta, surplus }
     }
 }
 
@@ -199,7 +199,7 @@ impl Mesh {
                 flights.map(|flight| flight.and_then(|flight| survey.kept_point(*flight)))
             {
                 let Parabola { sagitta, .. } = Parabola::through([start, end], middle);
-                self.foreseen.insert(edge, Bend { sagitta, surprise: f64::INFINITY }.of_half());
+                self.foreseen.insert(edge, Bend { sagitta, surplus: f64::INFINITY }.of_half());
             }
         }
     }
@@ -242,9 +242,9 @@ impl Mesh {
         let limit = if is_near { self.resolution } else { WITHIN * self.resolution };
         let foreseen = self.foreseen.get(&edge).copied();
         if let Some(bend) = self.bends.get(&edge) {
-            return Ok(OF_PARABOLA * bend.surprise > limit);
+            return Ok(OF_PARABOLA * bend.surplus > limit);
         }
-        if foreseen.is_some_and(|bend| bend.surprise <= ENOUGH * limit) {
+        if foreseen.is_some_and(|bend| bend.surplus <= ENOUGH * limit) {
             return Ok(false);
         }
         let middle = self.middle(survey, edge)?;
@@ -253,12 +253,12 @@ impl Mesh {
             Some(middle) if distance(one, other) <= LONGEST => {
                 let Parabola { sagitta, .. } = Parabola::through(image.ends, middle);
                 let foreseen = foreseen.map_or([0.0; 2], |bend| bend.sagitta);
-                Bend { sagitta, surprise: distance(sagitta, foreseen) }
+                Bend { sagitta, surplus: distance(sagitta, foreseen) }
             }
-            _ => Bend { sagitta: [0.0; 2], surprise: f64::INFINITY },
+            _ => Bend { sagitta: [0.0; 2], surplus: f64::INFINITY },
         };
         self.bends.insert(edge, bend);
-        Ok(OF_PARABOLA * bend.surprise > limit)
+        Ok(OF_PARABOLA * bend.surplus > limit)
     }
 
     /// The image of an edge, as far as it is known; none where its ends do not keep the limits.
@@ -423,7 +423,7 @@ impl Mesh {
     /// How an edge is bent, as far as that is known.
     fn bend(&self, edge: [FlightIndex; 2]) -> Option<Bend> {
         let bend = self.bends.get(&edge).or(self.foreseen.get(&edge))?;
-        bend.surprise.is_finite().then_some(*bend)
+        bend.surplus.is_finite().then_some(*bend)
     }
 
     /// The union of the images, and by how much its edge may be off, m: without bound where that is not known.
@@ -499,8 +499,8 @@ impl Mesh {
         let near = Edge::of(covered, NEAR * self.resolution);
         let of_edge = |edge: [FlightIndex; 2]| {
             let image = self.image(survey, edge)?;
-            let flown = self.bends.get(&edge).map(|bend| OF_PARABOLA * bend.surprise);
-            let error = flown.or(self.foreseen.get(&edge).map(|bend| bend.surprise)).unwrap_or(f64::INFINITY);
+            let flown = self.bends.get(&edge).map(|bend| OF_PARABOLA * bend.surplus);
+            let error = flown.or(self.foreseen.get(&edge).map(|bend| bend.surplus)).unwrap_or(f64::INFINITY);
             (error.is_infinite() || is_near(&image, &near)).then_some(error)
         };
         let of_triangle = |triangle: &[FlightIndex; 3]| {
