@@ -1,4 +1,4 @@
-import { useEffect, useState } from 'preact/hooks';
+import { useState } from 'preact/hooks';
 import { typed } from '../case';
 
 interface Common {
@@ -40,10 +40,7 @@ export function NumberInput({
   reading = AS_IT_IS,
   ...common
 }: TextProps<number | string> & { reading?: Reading | undefined }) {
-  const [text, setText] = useState(shown(reading.shown(value)));
-  useEffect(() => {
-    if (reading.stored(typed(text)) !== value) setText(shown(reading.shown(value)));
-  }, [value, reading]);
+  const [text, setText] = useState('');
   return (
     <input
       {...attributes(common)}
@@ -51,7 +48,7 @@ export function NumberInput({
       inputMode="text"
       autocomplete="off"
       spellcheck={false}
-      value={text}
+      value={reading.stored(typed(text)) === value ? text : shown(reading.shown(value))}
       placeholder={placeholder}
       onInput={(event) => {
         setText(event.currentTarget.value);
@@ -80,23 +77,20 @@ export function TextInput({ value, placeholder, onValue, ...common }: TextProps<
   );
 }
 
-/** A field for rows of numbers, as they come from a spreadsheet: cells apart by tabs, commas, semicolons or blanks. */
+/** A field for rows of numbers, as they come from a spreadsheet: cells apart by tabs, commas, semicolons or blanks. What is typed stays as it is typed as long as it means the rows. */
 export function RowsInput({
   value,
   rows = 6,
   onValue,
   ...common
 }: Common & { value: unknown[][]; rows?: number; onValue(value: unknown[][]): void }) {
-  const [text, setText] = useState(written(value));
-  useEffect(() => {
-    if (written(parsed(text)) !== written(value)) setText(written(value));
-  }, [written(value)]);
+  const [text, setText] = useState('');
   return (
     <textarea
       {...attributes(common)}
       rows={rows}
       spellcheck={false}
-      value={text}
+      value={normal(text) === normal(written(value)) ? text : written(value)}
       onInput={(event) => {
         setText(event.currentTarget.value);
         onValue(parsed(event.currentTarget.value));
@@ -113,6 +107,9 @@ export function parsed(text: string): unknown[][] {
     .filter((cells) => cells.length > 0)
     .map((cells) => cells.map(typed));
 }
+
+/** A text of rows without what makes no cell. */
+const normal = (text: string) => written(parsed(text));
 
 /** Rows as text. */
 export function written(rows: unknown[][]): string {

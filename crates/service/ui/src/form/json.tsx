@@ -1,4 +1,4 @@
-import { useEffect, useState } from 'preact/hooks';
+import { useLayoutEffect, useState } from 'preact/hooks';
 import { get, type Path, set } from '../case';
 import { draft } from '../store';
 import { idOf, inputOf, put } from './line';
@@ -22,7 +22,8 @@ function JsonInput({ label, path }: { label: string; path: Path }) {
   const [text, setText] = useState(written(value));
   // The text of the case itself needs no look.
   const own = text === written(value) ? { value } : read(text, path);
-  useEffect(() => {
+  // Before the paint: a text that is not of the value is never seen.
+  useLayoutEffect(() => {
     if ('why' in own || JSON.stringify(own.value) !== JSON.stringify(value)) setText(written(value));
   }, [value]);
   const { id, isBad, describedBy } = inputOf(path, true);
