@@ -140,6 +140,41 @@ async fn without_a_band_the_nearest_value_is_told() {
     assert!(answer["narrowest"].as_f64().unwrap() > 0.0);
 }
 
+/// Those of ends and peaks, whether a goal is one value or a range that is kept, beside central differences of flights.
+#[tokio::test]
+async fn derivatives_of_a_solution_are_those_of_flights_beside_it() {
+    let service = Service::new();
+    let goals = json!([
+        {"quantity": "longitude", "equals": 22, "tolerance": 1e-4},
+        {"quantity": "geodetic_latitude", "equals": 25, "tolerance": 1e-4},
+        {"quantity": "load_factor", "at": "peak", "at_most": 100},
+        {"quantity": "time", "at_most": 5000},
+    ]);
+    let answer = good_answer(&service, "/target", &with(&target(), "/achieve", goals)).await;
+    assert_eq!(answer["outcome"], "reached", "{answer}");
+    let solution = &answer["solutions"][0];
+    let case = with(&solution["case"], "/solver/relative_tolerance", 1e-13);
+    let values = numbers(&solution["values"]);
+    let numbers_at = async |pointer: &str, value: f64| -> Vec<f64> {
+        let flown = good_answer(&service, "/simulate", &with(&case, pointer, value)).await;
+        let of_end = ["longitude", "geodetic_latitude"].map(|column| &flown["final_state"][column]);
+        let others = [&flown["peaks"]["load_factor"]["value"], &flown["final_state"]["time"]];
+        of_end.into_iter().chain(others).map(|number| number.as_f64().unwrap()).collect()
+    };
+    for (number, pointer) in ["/initial_state/flight_path_angle", "/initial_state/heading"].into_iter().enumerate() {
+        let step = 1e-3;
+        let above = numbers_at(pointer, values[number] + step).await;
+        let below = numbers_at(pointer, values[number] - step).await;
+        for goal in 0..4 {
+            let difference = (above[goal] - below[goal]) / (2.0 * step);
+            let derivative = solution["derivatives"][goal][number].as_f64().unwrap();
+            // The differences are off by the square of the step, a ten-millionth, and by the noise of flights at 1e-13.
+            let allowed = 1e-5 * difference.abs() + 1e-6;
+            assert!((derivative - difference).abs() < allowed, "{goal} by {pointer}: {derivative} and {difference}");
+        }
+    }
+}
+
 #[tokio::test]
 async fn a_target_is_reached_and_its_case_can_be_sent_back() {
     let service = Service::new();

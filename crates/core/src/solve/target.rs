@@ -9,7 +9,7 @@ mod scan;
 mod search;
 mod trust_region;
 
-pub use search::{Accuracy, Fly, Goal, Iteration, Number, Outcome};
+pub use search::{Accuracy, Derivatives, Flights, Goal, Iteration, Number, Outcome};
 
 use crate::trajectory::Termination;
 use polish::Polished;
@@ -95,7 +95,7 @@ const INSENSITIVE: f64 = 1e-2;
 ///
 /// # Errors
 /// Those of `fly`.
-pub fn target<E>(numbers: &[Number], goals: &[Goal], options: Options, fly: &mut Fly<E>) -> Result<Target, E> {
+pub fn target<E>(numbers: &[Number], goals: &[Goal], options: Options, fly: &mut dyn Flights<E>) -> Result<Target, E> {
     let mut state = State {
         search: Search::new(numbers, goals, options.flights, options.is_recorded, fly),
         options,

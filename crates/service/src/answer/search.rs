@@ -7,6 +7,7 @@ use reentry::integrate::Statistics;
 use reentry::scenario::Scenario;
 use reentry::simulate::{BodyError, SimulationError, simulate};
 use reentry::solve::flight::{Extent, SearchFlight};
+use reentry::trajectory::Trajectory;
 
 use super::Work;
 use crate::error::ApiError;
@@ -103,6 +104,28 @@ impl<'a> Flights<'a> {
             }
         }
         Ok(flights)
+    }
+
+    /// Flies a case with its numbers set, whole, and takes of it what is wanted; none where it is no sound case, cannot be finished or held, or the
+    /// search must come to its end.
+    ///
+    /// # Errors
+    /// When the flag is raised.
+    pub(super) fn of_whole<T>(
+        &mut self,
+        case: &mut MovingCase,
+        values: &[f64],
+        wanted: impl FnOnce(AvailableQuantities, &Trajectory, &dyn Interrupt) -> Result<T, SimulationError>,
+    ) -> Result<Option<T>, ApiError> {
+        self.begin();
+        let Some((known, scenario)) = case.scenario(values) else { return Ok(None) };
+        let limited = Limited { interrupt: self.interrupt, until: self.until };
+        let flown = simulate(&scenario, &limited);
+        if let Ok(flight) = &flown {
+            self.took(flight.statistics());
+        }
+        let found = flown.and_then(|flight| wanted(known, &flight, &limited));
+        if self.interrupt.is_raised() { Err(ApiError::Interrupted) } else { Ok(found.ok()) }
     }
 
     /// Counts a flight.

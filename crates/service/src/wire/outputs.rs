@@ -58,7 +58,8 @@ pub struct AvailableWhereMoved {
 }
 
 impl AvailableWhereMoved {
-    fn of(&self, moved: Option<Moved>) -> &AvailableQuantities {
+    /// What is known of one of them.
+    pub(super) fn of(&self, moved: Option<Moved>) -> &AvailableQuantities {
         let of_moved = |Moved { variation, offset }: Moved| {
             self.moved.get(variation)?.iter().find(|(by, _)| by.to_bits() == offset.to_bits()).map(|(_, known)| known)
         };

@@ -1,19 +1,21 @@
 //! What a request wants of a flight: of a quantity, of the place where it ends, or of how it ends.
 
+use std::rc::Rc;
+
 use reentry::coordinates::{OrbitShape, Site};
 use reentry::planet::Planet;
 use reentry::scenario::Bound;
 use reentry::sensitivity::Moment;
 use reentry::solve::flight::{Extent, KeptFlight, SearchFlight};
 use reentry::solve::requirement::{Requirement, Wanted};
-use reentry::trajectory::{FlightPoint, Peak, Peaks, Termination as CoreTermination};
+use reentry::trajectory::{FlightPoint, Peak, Peaks, Termination as CoreTermination, Trajectory};
 use reentry::{Interrupt, simulate::SimulationError};
 
 use super::AngleUnit;
 use super::columns::{AvailableQuantities, Column};
 use super::description::{Object, Words, word};
 use super::events::Event;
-use super::outputs::{At, FlightOutput, at_site, ground_point, place_of, quantity};
+use super::outputs::{At, AvailableWhereMoved, FlightOutput, OutputNumber, at_site, ground_point, place_of, quantity};
 use super::reader::Fault;
 use super::shown::quoted;
 use super::trajectory::Termination;
@@ -232,7 +234,7 @@ impl RequestedRequirement {
                     }
                 };
                 let source = match peak_of(column).filter(|_| at == Moment::Peak) {
-                    Some(peak) => Source::Peak(peak),
+                    Some(peak) => Source::Peak(column, peak),
                     None if column.name == APOAPSIS => Source::Apoapsis(column, radius),
                     None => Source::Column(column),
                 };
@@ -370,7 +372,8 @@ enum Source {
     Column(&'static Column),
     /// The column of the apoapsis, above this radius.
     Apoapsis(&'static Column, f64),
-    Peak(fn(&Peaks) -> Option<Peak>),
+    /// The column of which it is the peak.
+    Peak(&'static Column, fn(&Peaks) -> Option<Peak>),
     East(Site),
     North(Site),
     Distance(Site),
@@ -394,7 +397,7 @@ impl WantedNumber {
         let is_at_instant = matches!(self.at, Moment::Start | Moment::End | Moment::Event { .. });
         // What is measured along the way is only known of all of it.
         let is_kept = match &self.source {
-            Source::Peak(_) => return Extent::Extremes,
+            Source::Peak(..) => return Extent::Extremes,
             Source::Column(column) => is_at_instant && !["downrange", "ground_distance"].contains(&column.name),
             Source::Apoapsis(..) | Source::East(_) | Source::North(_) | Source::Distance(_) => is_at_instant,
         };
@@ -435,20 +438,26 @@ impl WantedNumber {
         known: &AvailableQuantities,
         interrupt: &dyn Interrupt,
     ) -> Result<Reading, SimulationError> {
-        let both = |number: Option<f64>| Reading { shown: number, searched: number };
+        let none = Reading { shown: None, searched: None };
         // A body that did not leave has no numbers.
-        let Some(flown) = flight_of(flown, self.body.as_ref()) else { return Ok(both(None)) };
-        let shape = &known.planet.shape;
-        let of_column = |column: &'static Column| move |point: &FlightPoint| column.number(point, self.unit, known);
-        Ok(match &self.source {
-            Source::Peak(peak) => both(flown.peaks().and_then(peak).map(|peak| peak.value)),
-            Source::Column(column) => {
-                let value = of_column(column);
-                both(flown.point(self.at, &value, interrupt)?.and_then(|point| value(&point)))
-            }
+        let Some(flown) = flight_of(flown, self.body.as_ref()) else { return Ok(none) };
+        if let Source::Peak(_, peak) = &self.source {
+            let value = flown.peaks().and_then(peak).map(|peak| peak.value);
+            return Ok(Reading { shown: value, searched: value });
+        }
+        let value = |point: &FlightPoint| self.at_point(point, known).searched;
+        Ok(flown.point(self.at, &value, interrupt)?.map_or(none, |point| self.at_point(&point, known)))
+    }
+
+    /// The number at a point of a flight of which so much is known.
+    fn at_point(&self, point: &FlightPoint, known: &AvailableQuantities) -> Reading {
+        let both = |number: Option<f64>| Reading { shown: number, searched: number };
+        let planet = &known.planet;
+        let of_column = |column: &Column| column.number(point, self.unit, known);
+        match &self.source {
+            Source::Peak(column, _) | Source::Column(column) => both(of_column(column)),
             Source::Apoapsis(column, radius) => {
-                let planet = &known.planet;
-                let reciprocal = |point: &FlightPoint| {
+                let reciprocal = || {
                     let (elements, _) = point.orbital_elements(planet, known.sidereal_angle)?;
                     let apoapsis = match elements.shape {
                         OrbitShape::SemiMajorAxis(axis) => axis * (1.0 + elements.eccentricity),
@@ -457,22 +466,37 @@ impl WantedNumber {
                     };
                     Some(-1.0 / (apoapsis - planet.equatorial_radius() + radius))
                 };
-                let point = flown.point(self.at, &reciprocal, interrupt)?;
-                let shown = point.and_then(|point| column.number(&point, self.unit, known));
-                Reading { shown, searched: point.and_then(|point| reciprocal(&point)) }
+                Reading { shown: of_column(column), searched: reciprocal() }
             }
-            Source::East(site) | Source::North(site) | Source::Distance(site) => {
-                let value = |point: &FlightPoint| {
-                    let place = ground_point(point);
-                    Some(match self.source {
-                        Source::East(_) => site.offset_to(&place, shape)[0],
-                        Source::North(_) => site.offset_to(&place, shape)[1],
-                        _ => site.distance_and_azimuth_to(&place, shape)[0],
-                    })
-                };
-                both(flown.point(self.at, &value, interrupt)?.and_then(|point| value(&point)))
-            }
-        })
+            Source::East(site) => both(Some(site.offset_to(&ground_point(point), &planet.shape)[0])),
+            Source::North(site) => both(Some(site.offset_to(&ground_point(point), &planet.shape)[1])),
+            Source::Distance(site) => both(Some(site.distance_and_azimuth_to(&ground_point(point), &planet.shape)[0])),
+        }
+    }
+
+    /// The number as it is shown and as searches take it, by which a whole flight has its derivatives; none of a body, and where the flight has no
+    /// such moment. The derivative of a peak is that of its column at its time.
+    pub fn outputs(&self, flight: &Trajectory, known: &Rc<AvailableWhereMoved>) -> Option<[OutputNumber; 2]> {
+        if self.body.is_some() {
+            return None;
+        }
+        let at = match &self.source {
+            Source::Peak(_, peak) => Moment::Time(peak(flight.peaks())?.time),
+            _ => self.at,
+        };
+        let name = match &self.source {
+            Source::Peak(column, _) | Source::Column(column) | Source::Apoapsis(column, _) => column.name,
+            Source::East(_) | Source::North(_) | Source::Distance(_) => "site",
+        };
+        let output = |turn: Option<f64>, of: fn(Reading) -> Option<f64>| {
+            let (number, known) = (self.clone(), Rc::clone(known));
+            let value = move |point: &FlightPoint, moved| of(number.at_point(point, known.of(moved)));
+            OutputNumber { name, at, turn, value: Box::new(value) }
+        };
+        Some([
+            output(self.shown.turn, |reading| reading.shown),
+            output(self.searched().turn, |reading| reading.searched),
+        ])
     }
 }
 

@@ -1,13 +1,16 @@
 //! Numbers of a case that vary within ranges, and the case with them moved.
 
+use std::cell::RefCell;
+
 use reentry::scenario::{Bound, Scenario};
+use reentry::sensitivity::Variation;
 use reentry::solve::target::Number;
 use serde_json::{Value, json};
 
 use super::AngleUnit;
 use super::columns::AvailableQuantities;
 use super::description::{self, Object};
-use super::numbers::Numbers;
+use super::numbers::{Numbers, Varied};
 use super::reader::{Fault, NumberField};
 use super::scenario::{SimulateRequest, simulate_request};
 use super::schema::ANGLE;
@@ -188,6 +191,9 @@ impl Vary {
 /// A full turn may be off by this part, by rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// The step of a variation, in parts of the range: differences of fourth order then are exact to some ten digits.
+const STEP: f64 = 1e-3;
+
 /// The values that a number may have in the unit of the request.
 pub(super) fn bound(field: &NumberField, unit: AngleUnit) -> Bound {
     if field.unit == ANGLE { field.bound.scaled(unit.from_radians(1.0)) } else { field.bound }
@@ -243,6 +249,29 @@ impl MovingCase {
         let request = description::read(&mut self.tree, simulate_request)?;
         let scenario = request.try_into_scenario()?;
         Ok((request, scenario))
+    }
+
+    /// How the flight with the numbers set depends on each of them: none of one with which the case cannot be moved.
+    pub fn variations(&mut self, values: &[f64]) -> Vec<Option<Varied>> {
+        let as_flown = self.read(values).ok().map(|(_, scenario)| scenario.case().clone());
+        let widths: Vec<_> = self.varied.iter().map(|number| number.between[1] - number.between[0]).collect();
+        let moving = RefCell::new(self);
+        let variation = |(number, width): (usize, f64)| {
+            let known = RefCell::new(Vec::new());
+            let variation = Variation::new(STEP * width, |by| {
+                let mut moved = values.to_vec();
+                moved[number] += by;
+                let (request, scenario) = moving.borrow_mut().read(&moved).ok()?;
+                known.borrow_mut().push((by, request.known()));
+                let case = scenario.case().clone();
+                Some(match &as_flown {
+                    Some(as_flown) => case.sharing(as_flown),
+                    None => case,
+                })
+            });
+            Some(Varied { variation: variation?, known: known.into_inner() })
+        };
+        widths.into_iter().enumerate().map(variation).collect()
     }
 
     /// What flies with the numbers set, and what is known of it; none where that is no sound case.

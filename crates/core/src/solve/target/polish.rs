@@ -77,23 +77,27 @@ pub(super) fn beyond<E>(search: &mut Search<E>, polished: &Polished) -> Option<T
     None
 }
 
-/// Goes on to where all goals are met.
+/// Goes on to where all goals are met, and has the slopes there.
 fn approach<E>(search: &mut Search<E>, point: &mut Point, of_point: &mut Slopes) -> Result<(), Halt<E>> {
+    let mut is_stale = false;
     for _ in 0..MOST_STEPS {
         if point.worst() <= GOOD || !point.counts() {
-            return Ok(());
+            break;
         }
         let step = step(search, point, &of_point.residuals, RADIUS);
         let place: Vec<_> = point.place.iter().zip(step.iter()).map(|(place, step)| place + step).collect();
         let next = search.flown(&place, Accuracy::Fine)?;
         if next.merit() >= point.merit() {
-            return Ok(());
+            break;
         }
-        let is_slow = next.worst() > 0.1 * point.worst();
+        is_stale = next.worst() <= 0.1 * point.worst();
         *point = next;
-        if is_slow {
+        if !is_stale {
             *of_point = slopes(search, point, Accuracy::Fine)?;
         }
+    }
+    if is_stale {
+        *of_point = slopes(search, point, Accuracy::Fine)?;
     }
     Ok(())
 }

@@ -47,8 +47,38 @@ pub struct Outcome {
     pub shown: Vec<Option<f64>>,
 }
 
-/// Flies all of several numbers; fewer of them once the time is over.
-pub type Fly<'a, E> = dyn FnMut(&[Vec<f64>], Accuracy) -> Result<Vec<Outcome>, E> + 'a;
+/// The derivatives of the number of each goal by each number that varies, in their units; not a finite number where there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derivatives {
+    /// Of the number as searches take it.
+    pub searched: Vec<Vec<f64>>,
+    /// Of the number as it is shown.
+    pub shown: Vec<Vec<f64>>,
+}
+
+/// Whoever flies for a search.
+pub trait Flights<E> {
+    /// Flies all of several numbers; fewer of them once the time is over.
+    ///
+    /// # Errors
+    /// When a flight fails for a reason that is not its own.
+    fn fly(&mut self, values: &[Vec<f64>], accuracy: Accuracy) -> Result<Vec<Outcome>, E>;
+
+    /// The derivatives that flights with these numbers have along their steps; none where it is cheaper to fly beside them, and once the time is
+    /// over. It counts as a flight.
+    ///
+    /// # Errors
+    /// Those of [`fly`](Self::fly).
+    fn derivatives(&mut self, _values: &[f64], _accuracy: Accuracy) -> Result<Option<Derivatives>, E> {
+        Ok(None)
+    }
+}
+
+impl<E, F: FnMut(&[Vec<f64>], Accuracy) -> Result<Vec<Outcome>, E>> Flights<E> for F {
+    fn fly(&mut self, values: &[Vec<f64>], accuracy: Accuracy) -> Result<Vec<Outcome>, E> {
+        self(values, accuracy)
+    }
+}
 
 /// Why a search ends early.
 pub(super) enum Halt<E> {
@@ -111,7 +141,7 @@ pub struct Iteration {
 pub(super) struct Search<'a, E> {
     pub(super) numbers: &'a [Number],
     pub(super) goals: &'a [Goal],
-    fly: &'a mut Fly<'a, E>,
+    fly: &'a mut (dyn Flights<E> + 'a),
     /// The flights that may still be flown.
     left: usize,
     pub(super) flights: usize,
@@ -131,7 +161,7 @@ impl<'a, E> Search<'a, E> {
         goals: &'a [Goal],
         flights: usize,
         is_recorded: bool,
-        fly: &'a mut Fly<'a, E>,
+        fly: &'a mut (dyn Flights<E> + 'a),
     ) -> Self {
         Self {
             numbers,
@@ -162,10 +192,24 @@ impl<'a, E> Search<'a, E> {
         places.truncate(self.left);
         self.left -= places.len();
         let values: Vec<_> = places.iter().map(|place| self.values(place)).collect();
-        let outcomes = (self.fly)(&values, accuracy).map_err(Halt::Failed)?;
+        let outcomes = self.fly.fly(&values, accuracy).map_err(Halt::Failed)?;
         let points: Vec<_> =
             places.into_iter().zip(outcomes).map(|(place, outcome)| self.noted(place, outcome)).collect();
         if points.len() < count { Err(Halt::Budget) } else { Ok(points) }
+    }
+
+    /// The derivatives at a point, along the steps of its flight, if there are any.
+    pub(super) fn derivatives(&mut self, point: &Point, accuracy: Accuracy) -> Result<Option<Derivatives>, Halt<E>> {
+        let values = self.values(&point.place);
+        if self.left == 0 {
+            return Err(Halt::Budget);
+        }
+        let derivatives = self.fly.derivatives(&values, accuracy).map_err(Halt::Failed)?;
+        if derivatives.is_some() {
+            self.left -= 1;
+            self.flights += 1;
+        }
+        Ok(derivatives)
     }
 
     /// Notes what a flight gave.

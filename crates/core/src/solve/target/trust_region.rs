@@ -132,12 +132,28 @@ fn update<E>(search: &Search<E>, slopes: &DMatrix<f64>, from: &Point, to: &Point
     (square > 0.0).then(|| slopes + error * way.transpose() / square)
 }
 
-/// The slopes at a point, by central differences, or to one side where flights on the other do not count.
+/// The slopes at a point: along the steps of its flight or, by numbers for which a goal has none there, by central differences, or to one side
+/// where flights on the other do not count.
 pub(super) fn slopes<E>(search: &mut Search<E>, point: &Point, accuracy: Accuracy) -> Result<Slopes, Halt<E>> {
     let (goals, numbers) = (search.goals.len(), search.numbers.len());
     let mut residuals = DMatrix::zeros(goals, numbers);
     let mut shown = vec![vec![None; numbers]; goals];
+    let exact = search.derivatives(point, accuracy)?.zip(point.residuals.as_ref());
     for number in 0..numbers {
+        if let Some((exact, of_point)) = &exact
+            && (0..goals).all(|goal| exact.searched[goal][number].is_finite() && exact.shown[goal][number].is_finite())
+        {
+            let width = search.numbers[number].width();
+            for goal in 0..goals {
+                let requirement = &search.goals[goal].searched;
+                // Within a range, nothing is missed.
+                let is_missed = requirement.is_equality() || of_point[goal] != 0.0;
+                let slope = exact.searched[goal][number] * width / requirement.tolerance;
+                residuals[(goal, number)] = if is_missed { slope } else { 0.0 };
+                shown[goal][number] = Some(exact.shown[goal][number]);
+            }
+            continue;
+        }
         let mut beside = |step: f64| -> Result<Option<Point>, Halt<E>> {
             let mut place = point.place.clone();
             place[number] += step;
