@@ -232,6 +232,21 @@ impl Quantity {
         Self::UpwardAcceleration,
     ];
 
+    /// Whether it is known with the loads on the vehicle alone.
+    pub(crate) fn is_load(self) -> bool {
+        matches!(
+            self,
+            Self::Mach
+                | Self::DynamicPressure
+                | Self::LoadFactor
+                | Self::AirSpeed
+                | Self::HeatFlux
+                | Self::WallTemperature
+                | Self::Deceleration
+                | Self::Density
+        )
+    }
+
     /// Whether it is an angle.
     pub fn is_angle(self) -> bool {
         matches!(self, Self::FlightPathAngle | Self::Inclination)

@@ -14,7 +14,7 @@ mod step;
 mod step_control;
 mod tableau;
 
-pub use lanes::{LaneSteps, lane_instructions, use_lanes};
+pub use lanes::{LaneBounds, LaneJob, LaneSteps, lane_instructions, use_lanes};
 pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 
@@ -27,7 +27,7 @@ use num_dual::DualSVec64;
 
 use crate::interrupt::Interrupt;
 use step::Inside;
-use step_control::{NOT_CONVERGED_SHRINK, StepControl};
+use step_control::{NOT_CONVERGED_SHRINK, StepControl, TrialError};
 
 /// A system of `N` ordinary differential equations.
 pub trait System<S, const N: usize> {
@@ -128,6 +128,28 @@ pub struct Limits<'a> {
     pub interrupt: &'a dyn Interrupt,
 }
 
+/// The end of an explicit trial step.
+#[derive(Debug)]
+struct TrialEnd<const N: usize> {
+    /// s.
+    time: f64,
+    state: [f64; N],
+    derivative: [f64; N],
+    /// What the step keeps.
+    slopes: step::KeptSlopes<N>,
+    /// That may start here, s.
+    longest_step: f64,
+}
+
+impl<const N: usize> TrialEnd<N> {
+    #[inline]
+    fn of<F: StepBounds<N>>(system: &F, time: f64, trial: &step::Trial<f64, N>) -> Self {
+        let state = trial.outcome.end;
+        let (derivative, slopes) = (system.derivative(time, &state), trial.kept_slopes());
+        Self { time, state, derivative, slopes, longest_step: system.longest_step(time, &state) }
+    }
+}
+
 /// Advances the state of a system step by step.
 ///
 /// Every call is given the system, which may change from one step to the next; then comes [`restart`](Self::restart).
@@ -193,10 +215,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
             } else {
                 let Self { control, state, derivative, .. } = self;
                 let trial = step::attempt(system, control.time, state, derivative, control.length);
-                let slopes = trial.kept_slopes();
-                let rest = |end: &[f64; N]| (system.derivative(trial_end, end), slopes);
-                if let Some(step) = self.judge(system, &trial.outcome, trial_end, rest) {
-                    return Ok(step);
+                let error = control.error(state, &trial.outcome);
+                if self.accepts(system, error) {
+                    return Ok(self.take(system, TrialEnd::of(system, trial_end, &trial)));
                 }
             }
         }
@@ -211,24 +232,16 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.control.trial_end(end)
     }
 
-    /// Goes to the end of an explicit trial step, if it is exact enough; otherwise the next one will be shorter. `rest`: the rate of change at the end,
-    /// and the slopes that the step keeps.
+    /// Whether an explicit trial step of an error is exact enough; otherwise the next one will be shorter.
     #[inline]
-    fn judge<F: StepBounds<N>>(
-        &mut self,
-        system: &F,
-        trial: &step::Outcome<f64, N>,
-        trial_end: f64,
-        rest: impl FnOnce(&[f64; N]) -> ([f64; N], step::KeptSlopes<N>),
-    ) -> Option<Step<N>> {
+    fn accepts<F: StepBounds<N>>(&mut self, system: &F, error: TrialError<f64>) -> bool {
         let length = self.control.length;
-        if self.control.accepts(&self.state, trial) {
-            let rest = rest(&trial.end);
-            return Some(self.take(system, trial.end, trial_end, rest));
+        let is_accepted = self.control.accepts(error);
+        if !is_accepted {
+            let corner = self.time_to_corner(system, length);
+            self.control.end_at_corner(length, corner);
         }
-        let corner = self.time_to_corner(system, length);
-        self.control.end_at_corner(length, corner);
-        None
+        is_accepted
     }
 
     /// The time to the next corner of the rates that is not just at the start of a step of a length, s.
@@ -248,9 +261,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
         let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, length);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
-        let (slopes, state) = (trial.kept_slopes(), trial.outcome.end);
-        let end_derivative = system.derivative(end, &state);
-        self.take(system, state, end, (end_derivative, slopes))
+        self.take(system, TrialEnd::of(system, end, &trial))
     }
 
     /// Ends the step that was taken last inside it, at a part of it, as its interpolant has the state there: which costs one evaluation. None
@@ -305,29 +316,36 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self.control.shorten(system.longest_step(time, &self.state));
     }
 
-    /// Goes to the end of an explicit trial step: a state and a time, s, with the rate of change there and the slopes that the step keeps.
+    /// Goes to the end of an explicit trial step.
     #[inline]
-    fn take<F: StepBounds<N>>(
-        &mut self,
-        system: &F,
-        end: [f64; N],
-        end_time: f64,
-        (end_derivative, slopes): ([f64; N], step::KeptSlopes<N>),
-    ) -> Step<N> {
+    fn take<F: StepBounds<N>>(&mut self, system: &F, trial: TrialEnd<N>) -> Step<N> {
+        let TrialEnd { time, state, derivative, slopes, longest_step } = trial;
         let step = Step {
             start_time: self.control.time,
-            end_time,
+            end_time: time,
             start: self.state,
-            end,
+            end: state,
             start_derivative: self.derivative,
-            end_derivative,
+            end_derivative: derivative,
             inside: Inside::Explicit(slopes),
         };
-        self.previous = None;
-        self.go_to_end(&step);
-        let longest = system.longest_step(end_time, &self.state);
-        self.control.limit(longest, || system.longest_implicit_step(end_time, &self.state));
+        self.go_to(system, time, state, derivative, longest_step);
         step
+    }
+
+    /// Goes to the end of an explicit step: a time, s, and a state with its rate of change, in which a step of a length, s, may start.
+    #[inline]
+    fn go_to<F: StepBounds<N>>(
+        &mut self,
+        system: &F,
+        time: f64,
+        state: [f64; N],
+        derivative: [f64; N],
+        longest_step: f64,
+    ) {
+        self.previous = None;
+        (self.control.time, self.state, self.derivative) = (time, state, derivative);
+        self.control.limit(longest_step, || system.longest_implicit_step(time, &self.state));
     }
 
     /// Tries an implicit step of a length, s.

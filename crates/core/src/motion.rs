@@ -18,8 +18,10 @@ pub use spherical::Spherical;
 pub use state::State;
 pub use thrust::{Burn, ThrustDirection};
 
+pub(crate) use lanes::EndReadings;
 pub(crate) use model_mode::{Chatter, SwitchQuantity, SwitchSet};
 pub(crate) use quantity::StateRate;
+use quantity::inertial_velocity;
 pub(crate) use state::MASS;
 pub(crate) use thrust::{along, direction, tilted};
 
@@ -34,7 +36,7 @@ use crate::integrate::StepBounds;
 use crate::interpolation::Hint;
 use crate::parachute::Canopies;
 use crate::planet::{Gravity, Planet};
-use crate::scalar::{Over, Scalar, apart, length, reciprocal_or_one};
+use crate::scalar::{Over, Real, Scalar, apart, length, reciprocal_or_one};
 use crate::steering::Steering;
 use crate::vehicle::{Aerodynamics, Coefficients};
 use crate::wind::Wind;
@@ -433,7 +435,11 @@ impl<P: Scalar> Forces<P> {
         let against = air.drag + lift_up * up.dot(ahead);
         // The density, an exponential, is what all else would wait for.
         let density = self.density(flow);
-        Vector3::from_fn(|i, _| (up[i] * lift_up + left[i] * lift_left - ahead[i] * against) * density)
+        Vector3::new(
+            (up.x * lift_up + left.x * lift_left - ahead.x * against) * density,
+            (up.y * lift_up + left.y * lift_left - ahead.y * against) * density,
+            (up.z * lift_up + left.z * lift_left - ahead.z * against) * density,
+        )
     }
 
     /// The air that meets a vehicle in a state.
@@ -577,9 +583,11 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn density_of_model<S: Over<P>>(&self, arguments: &Arguments<S>) -> S {
         let Arguments { altitude, density, .. } = *arguments;
-        density.unwrap_or_else(|| {
-            self.models.atmosphere.density(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere)
-        })
+        // Not a closure, which in lanes would leave their instructions.
+        match density {
+            Some(density) => density,
+            None => self.models.atmosphere.density(self.mode.of(Switch::Atmosphere), altitude, &self.cache.atmosphere),
+        }
     }
 
     /// What the air does to the vehicle.
@@ -748,53 +756,14 @@ impl Forces {
     }
 
     /// The longest explicit step that may start in a state, s.
-    ///
-    /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
-    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do. The same holds near the vertical, to which lift
-    /// that fades there turns the flight within V/(L/m) over the slope of the fade.
     fn longest_step(&self, time: f64, state: &State<f64>) -> f64 {
-        let flow = self.flow::<false, _>(time, state);
-        let longest = self.longest_fall(time, state, &flow);
-        let air = self.air::<false, _>(time, &flow);
-        let (speed, density) = (flow.directions.speed, self.density(&flow));
-        let drag_time = speed / (air.drag.max(air.lift.abs()) * density);
-        let longest = if drag_time.is_nan() { longest } else { longest.min(DRAG_TIMES_A_STEP * drag_time) };
-        let fade_rate = lift_fade_slope(flow.directions.cos_gamma) * air.lift.abs() * density / speed;
-        let longest = if fade_rate > 0.0 { longest.min(FADE_TIMES_A_STEP / fade_rate) } else { longest };
-        longest.min(self.longest_braking(time, state))
+        self.longest_unbraked_step(time, state).min(self.longest_braking(time, state))
     }
 
     /// The longest implicit step that may start in a state, s.
     fn longest_implicit_step(&self, time: f64, state: &State<f64>) -> f64 {
         let flow = self.flow::<false, _>(time, state);
-        self.longest_fall(time, state, &flow).min(self.longest_braking(time, state))
-    }
-
-    /// The longest step that does not jump over air, s.
-    ///
-    /// From space an integrator sees no air, and a long step would jump over the whole atmosphere.
-    /// A step ends at the latest when the vehicle, at its present vertical speed and acceleration, has fallen half the way
-    /// to the sensible atmosphere and some scale heights more.
-    fn longest_fall(&self, time: f64, state: &State<f64>, flow: &Flow<f64>) -> f64 {
-        let State { position, velocity, .. } = state;
-        let radius = length(position);
-        let to_air = (flow.arguments.altitude - self.models.atmosphere.sensible_altitude()).max(0.0);
-        let depth = 0.5 * to_air + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
-        let rise = position.dot(velocity) / radius;
-        let inertial = velocity + Vector3::z().cross(position) * self.models.planet.rotation_rate;
-        let level_squared = inertial.norm_squared() - rise * rise;
-        let thrust = self.push_on(time, state, flow).map_or(0.0, |thrust| thrust.norm());
-        let fall = (self.models.planet.point_gravity(radius) - level_squared / radius + thrust).max(0.0);
-        // The positive root of rise t - fall t²/2 = -depth.
-        let root = (rise * rise + 2.0 * fall * depth).sqrt();
-        if rise > 0.0 { (rise + root) / fall } else { 2.0 * depth / (root - rise) }
-    }
-
-    /// The thrust over the mass, m/s², if there is one.
-    fn push_on(&self, time: f64, state: &State<f64>, flow: &Flow<f64>) -> Option<Vector3<f64>> {
-        self.burn.as_ref()?;
-        let aerodynamic = self.aerodynamic::<false, _>(time, flow);
-        Some(self.push(time, state, flow, &aerodynamic)?.acceleration)
+        self.longest_fall::<false, _>(time, state, &flow).min(self.longest_braking(time, state))
     }
 
     /// What the air takes from the vehicle and what thrust gives it, over its mass, W/kg.
@@ -809,6 +778,72 @@ impl Forces {
     /// D/m, m/s², of constant coefficients under a dynamic pressure, Pa.
     pub(crate) fn drag_under(&self, dynamic_pressure: f64) -> f64 {
         dynamic_pressure * self.area_over_mass * self.parameters.drag_coefficient
+    }
+}
+
+impl<S: Scalar> Flow<S> {
+    /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
+    #[inline(always)]
+    pub(crate) fn cos_squared_gamma(&self) -> S {
+        self.directions.left.dot(&self.directions.left)
+    }
+}
+
+impl<P: Scalar> Forces<P> {
+    /// The longest explicit step that may start in a state, s, where no thrust brakes.
+    ///
+    /// In the air it ends within a few times of drag, V/(D/m): where the motion is stiff, an explicit method is stable no longer,
+    /// and at loose tolerances its dense output leaves all bounds before the ends of its steps do. The same holds near the vertical, to which lift
+    /// that fades there turns the flight within V/(L/m) over the slope of the fade.
+    #[inline(always)]
+    fn longest_unbraked_step<S: Over<P> + Real>(&self, time: S, state: &State<S>) -> S {
+        if self.of_thesis {
+            self.longest_unbraked_step_by::<true, S>(time, state)
+        } else {
+            apart(|| self.longest_unbraked_step_by::<false, S>(time, state))
+        }
+    }
+
+    #[inline(always)]
+    fn longest_unbraked_step_by<const THESIS: bool, S: Over<P> + Real>(&self, time: S, state: &State<S>) -> S {
+        let flow = self.flow::<THESIS, _>(time, state);
+        let longest = self.longest_fall::<THESIS, _>(time, state, &flow);
+        let air = self.air::<THESIS, _>(time, &flow);
+        let (speed, density) = (flow.directions.speed, self.density(&flow));
+        // Where there is no air, or no motion, these are no numbers, or without end.
+        let drag_time = speed / (air.drag.max(air.lift.abs()) * density);
+        let fade_rate = lift_fade_slope(flow.directions.cos_gamma) * air.lift.abs() * density / speed;
+        longest.min(drag_time * DRAG_TIMES_A_STEP).min(S::from(FADE_TIMES_A_STEP) / fade_rate)
+    }
+
+    /// The longest step that does not jump over air, s.
+    ///
+    /// From space an integrator sees no air, and a long step would jump over the whole atmosphere.
+    /// A step ends at the latest when the vehicle, at its present vertical speed and acceleration, has fallen half the way
+    /// to the sensible atmosphere and some scale heights more.
+    #[inline(always)]
+    fn longest_fall<const THESIS: bool, S: Over<P> + Real>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> S {
+        let State { position, velocity, .. } = state;
+        let radius = flow.directions.radius;
+        let to_air = (flow.arguments.altitude - self.models.atmosphere.sensible_altitude()).max(S::zero());
+        let depth = to_air * 0.5 + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
+        let rise = position.dot(velocity) / radius;
+        let inertial = inertial_velocity(&self.models.planet, state);
+        let level_squared = inertial.dot(&inertial) - rise * rise;
+        let thrust = if THESIS { None } else { self.push_on(time, state, flow) };
+        let thrust = thrust.map_or_else(S::zero, |thrust| length(&thrust));
+        let fall = (self.models.planet.point_gravity(radius) - level_squared / radius + thrust).max(S::zero());
+        // The positive root of rise t - fall t²/2 = -depth.
+        let root = (rise * rise + fall * depth * 2.0).sqrt();
+        S::select((-rise).less_than(0.0), (rise + root) / fall, depth * 2.0 / (root - rise))
+    }
+
+    /// The thrust over the mass, m/s², if there is one.
+    #[inline(always)]
+    fn push_on<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Option<Vector3<S>> {
+        self.burn.as_ref()?;
+        let aerodynamic = self.aerodynamic::<false, _>(time, flow);
+        Some(self.push(time, state, flow, &aerodynamic)?.acceleration)
     }
 }
 

@@ -1,8 +1,10 @@
 //! The number types in which the physics is written once: `f64`, the dual numbers of `num-dual`, which carry derivatives,
-//! and [`Lanes`] of several numbers.
+//! and [`Lanes`] of several numbers, with derivatives [`DualLanes`].
 
+mod dual_lanes;
 mod lanes;
 
+pub use dual_lanes::DualLanes;
 pub use lanes::Lanes;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -52,6 +54,9 @@ pub trait Scalar:
 
     /// Whether the value is less than `other`.
     fn less_than(self, other: f64) -> Self::Mask;
+
+    /// Whether the answer is yes for any of the numbers.
+    fn any(mask: Self::Mask) -> bool;
 
     /// `chosen` where the mask holds, `otherwise` where it does not.
     fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
@@ -108,6 +113,11 @@ where
     #[inline(always)]
     fn less_than(self, other: f64) -> bool {
         self.re() < other
+    }
+
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
     }
 
     #[inline(always)]
@@ -223,6 +233,38 @@ impl Chain for Dual2_64 {
 #[inline(never)]
 pub(crate) fn apart<R>(function: impl FnOnce() -> R) -> R {
     function()
+}
+
+/// A number without derivatives, `f64` or lanes of it: only of such a one are there quotients, magnitudes and limits.
+pub trait Real: Scalar<Value = Self> + Div<Output = Self> {
+    /// The magnitude.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// The smaller of two numbers, or the one that is a number.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+
+    /// The greater of two numbers, or the one that is a number.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.max(other)
+    }
 }
 
 /// `K` functions of `N` arguments that go by cells: which cell it is, depends on the values of the arguments.

@@ -15,7 +15,7 @@ pub use lanes::{arrivals, ends_of_all, extremes_of_all};
 
 use crate::integrate::{AnyStep, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{Formulation, Singularity, Switch};
+use crate::motion::{EndReadings, Forces, Formulation, Singularity, Switch};
 use crate::number_text::NumberText;
 use crate::scenario::{ForFormulation, FormulationIn, Phase, Scenario, dispatch};
 use crate::trajectory::{Arrival, Ends, Extremes, Flown, Instant, StoredStep, Trajectory, Warning};
@@ -228,6 +228,14 @@ trait Observer<F, const N: usize> {
     /// What is wanted.
     type Outcome;
 
+    /// Whether it takes the loads at the ends of steps.
+    fn takes_loads(&self) -> bool {
+        false
+    }
+
+    /// Notes a step in which nothing happens, if that is all that it needs of it.
+    fn observe_quietly(&mut self, step: &QuietStep) -> bool;
+
     /// Notes a step.
     fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError>;
 
@@ -235,11 +243,27 @@ trait Observer<F, const N: usize> {
     fn finish(self, flight: Flight<F, N>, arrival: Arrival) -> Result<Self::Outcome, SimulationError>;
 }
 
+/// A step in which nothing happens.
+struct QuietStep<'a> {
+    forces: &'a Forces,
+    /// The number of the phase to which it belongs.
+    phase: usize,
+    /// s.
+    start_time: f64,
+    /// s.
+    end_time: f64,
+    read: &'a EndReadings,
+}
+
 /// Wants the end alone.
 struct EndObserver;
 
 impl<F, const N: usize> Observer<F, N> for EndObserver {
     type Outcome = Arrival;
+
+    fn observe_quietly(&mut self, _: &QuietStep) -> bool {
+        true
+    }
 
     fn observe(&mut self, _: &StepView<F, N>) -> Result<(), SimulationError> {
         Ok(())
@@ -282,6 +306,18 @@ where
     AnyStep: From<Step<N>>,
 {
     type Outcome = Flown;
+
+    fn takes_loads(&self) -> bool {
+        self.kept != Kept::Ends
+    }
+
+    fn observe_quietly(&mut self, step: &QuietStep) -> bool {
+        match self.kept {
+            Kept::Ends => true,
+            Kept::Extremes => self.peak_tracker.observe_quietly(step),
+            Kept::Steps => false,
+        }
+    }
 
     fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError> {
         let Self { kept, interrupt, steps, peak_tracker, .. } = self;
@@ -327,7 +363,7 @@ fn fly<F: Formulation<N>, const N: usize>(
     }
     loop {
         let step = flight.advance()?;
-        if let Some(arrival) = flight.pass(&step, &mut observe)? {
+        if let Some(arrival) = flight.pass(&step, None, &mut observe)? {
             return Ok(arrival);
         }
     }

@@ -32,8 +32,7 @@ impl<F: Fn(f64) -> Dual64> Inside for F {
 /// One that starts at or below zero must rise first; while it sinks or comes down without having been positive,
 /// the fall is where it turns down.
 pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: &impl Inside) -> Option<f64> {
-    let reach = length * start.eps.abs().max(end.eps.abs());
-    if start.re.min(end.re) > reach {
+    if stays_above(start, end, length) {
         return None;
     }
     let mut from = (0.0, start);
@@ -46,6 +45,12 @@ pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: &impl Inside)
         from = to;
     }
     None
+}
+
+/// Whether a quantity is above zero at both ends of a step and, at their rates, too far to come down and go up again in its time.
+pub fn stays_above(start: Dual64, end: Dual64, length: f64) -> bool {
+    let way = start.re + end.re;
+    start.re > 0.0 && end.re > 0.0 && way > REACH * length * start.eps.abs().max(end.eps.abs())
 }
 
 /// Whether the ends of a step tell of a fall: the quantity is at or below zero at the end, or falls and rises again, with tangents that
@@ -97,13 +102,13 @@ fn dips(start: Dual64, end: Dual64) -> bool {
 }
 
 /// Whether they tell of a maximum inside.
-fn rises(start: Dual64, end: Dual64) -> bool {
+pub fn rises(start: Dual64, end: Dual64) -> bool {
     start.eps > 0.0 && end.eps < 0.0
 }
 
 /// The part of the step at which the quantity is greatest, if it rises at the start and falls at the end.
 pub fn maximum(start: Dual64, end: Dual64, inside: &impl Inside) -> Option<f64> {
-    (start.eps > 0.0 && end.eps < 0.0).then(|| turning_point((0.0, start), (1.0, end), inside))
+    rises(start, end).then(|| turning_point((0.0, start), (1.0, end), inside))
 }
 
 /// When a step is expected to reach a place that will cut it.
@@ -122,10 +127,15 @@ impl PredictedCrossing {
     }
 }
 
+/// Whether a falling quantity may reach zero within a time, s, at its rate.
+pub fn may_fall_within(now: Dual64, within: f64) -> bool {
+    now.re > 0.0 && now.eps < 0.0 && now.re < -2.0 * within * now.eps
+}
+
 /// When a falling quantity will reach zero, if that may be within a time, s: extrapolated by the cubic through its values and rates at both ends of
 /// the last step. `before`: the length of that step, s, and the quantity at its start; where there is none, the present rate is extrapolated.
 pub fn predicted_fall(now: Dual64, before: Option<(f64, Dual64)>, within: f64) -> Option<PredictedCrossing> {
-    if !(now.re > 0.0 && now.eps < 0.0 && now.re < -2.0 * within * now.eps) {
+    if !may_fall_within(now, within) {
         return None;
     }
     let straight = -now.re / now.eps;
@@ -193,6 +203,9 @@ fn crossing_after(above: Sample, end: Sample, inside: &impl Inside) -> Option<f6
 fn turning_point(a: Sample, b: Sample, inside: &impl Inside) -> f64 {
     root::bracketed(|part| inside.at(part).eps, (a.0, a.1.eps), (b.0, b.1.eps), TURNING_POINT_RESOLUTION)
 }
+
+/// In a step a quantity changes at no more than so many times the greater of its rates at the ends.
+const REACH: f64 = 1.5;
 
 /// Parts of a step to which a turning point is located; the value there is off by the square of it.
 const TURNING_POINT_RESOLUTION: f64 = 1e-9;

@@ -2,13 +2,22 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::step::Inside;
+use super::step_control::{Tolerances, TrialError};
 use super::{IntegrationError, Integrator, Step, StepBounds, System, step};
-use crate::scalar::Lanes;
+use crate::scalar::{DualLanes, Lanes};
+
+/// What a system in lanes says about the length of its steps.
+pub trait LaneBounds<const N: usize, const L: usize>: System<Lanes<L>, N> {
+    /// The [longest step](StepBounds::longest_step) that may start in the state of each lane, to the last digit; none where each system has to be
+    /// asked itself.
+    fn longest_step(&self, time: Lanes<L>, state: &[Lanes<L>; N]) -> Option<Lanes<L>>;
+}
 
 /// A trial step of each of `L` integrators, computed at once by a system in lanes: to the last digit what each would try alone.
 ///
-/// In turn, every integrator is [loaded](Self::load), all steps are [tried](Self::attempt), and every integrator [judges](Self::judge) its own.
-/// Lanes without an integrator repeat what was in them.
+/// In turn, every integrator is [loaded](Self::load), all steps are [tried](Self::attempt), and every integrator [judges](Self::judge) its own,
+/// of which the [step](Self::step) is there until the next ones are tried. Lanes without an integrator repeat what was in them.
 #[derive(Debug)]
 pub struct LaneSteps<const N: usize, const L: usize> {
     instructions: isa::InstructionSet,
@@ -17,8 +26,11 @@ pub struct LaneSteps<const N: usize, const L: usize> {
     end_time: Lanes<L>,
     state: [Lanes<L>; N],
     derivative: [Lanes<L>; N],
+    tolerances: Tolerances<Lanes<L>, N>,
     trial: step::Trial<Lanes<L>, N>,
+    error: TrialError<Lanes<L>>,
     end_derivative: [Lanes<L>; N],
+    longest_step: Option<Lanes<L>>,
 }
 
 impl<const N: usize, const L: usize> LaneSteps<N, L> {
@@ -33,8 +45,11 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
             end_time: none,
             state: [none; N],
             derivative: [none; N],
+            tolerances: Tolerances::none(),
             trial: step::Trial::none(),
+            error: TrialError::none(),
             end_derivative: [none; N],
+            longest_step: None,
         })
     }
 
@@ -52,6 +67,7 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
         self.end_time.0[lane] = integrator.prepare(system, end)?;
         self.time.0[lane] = integrator.control.time;
         self.length.0[lane] = integrator.control.length;
+        self.tolerances.put(lane, &integrator.control);
         for i in 0..N {
             self.state[i].0[lane] = integrator.state[i];
             self.derivative[i].0[lane] = integrator.derivative[i];
@@ -60,27 +76,77 @@ impl<const N: usize, const L: usize> LaneSteps<N, L> {
     }
 
     /// Tries the steps of all lanes.
-    pub fn attempt<M: System<Lanes<L>, N>>(&mut self, system: &M) {
-        self.instructions.attempt(self, system);
+    pub fn attempt<M: LaneBounds<N, L>>(&mut self, system: &M) {
+        self.instructions.run(Attempt { steps: self, system });
     }
 
-    /// Lets the integrator of a lane take its step, if that is exact enough; otherwise its next one will be shorter.
-    pub fn judge<F: StepBounds<N>>(
-        &self,
-        lane: usize,
-        integrator: &mut Integrator<'_, N>,
-        system: &F,
-    ) -> Option<Step<N>> {
-        let rest = |_: &[f64; N]| (step::of_lane(&self.end_derivative, lane), self.trial.kept_slopes_of(lane));
-        integrator.judge(system, &self.trial.outcome_of(lane), self.end_time.0[lane], rest)
+    /// The times at which the steps end, s, and the states then, moving along their rates of change.
+    pub fn ends(&self) -> (DualLanes<L>, [DualLanes<L>; N]) {
+        let end = |i: usize| DualLanes::new(self.trial.outcome.end[i], self.end_derivative[i]);
+        (DualLanes::new(self.end_time, Lanes::from(1.0)), std::array::from_fn(end))
+    }
+
+    /// Runs a job in lanes.
+    pub fn run<J: LaneJob>(&self, job: J) -> J::Output {
+        self.instructions.run(job)
+    }
+
+    /// Lets the integrator of a lane go to the end of its step, if that is exact enough; otherwise its next one will be shorter.
+    pub fn judge<F: StepBounds<N>>(&self, lane: usize, integrator: &mut Integrator<'_, N>, system: &F) -> bool {
+        let is_accepted = integrator.accepts(system, self.error.of_lane(lane));
+        if is_accepted {
+            let (time, state) = (self.end_time.0[lane], step::of_lane(&self.trial.outcome.end, lane));
+            let in_lanes = self.longest_step.map(|longest_step| longest_step.0[lane]);
+            let longest_step = in_lanes.unwrap_or_else(|| system.longest_step(time, &state));
+            integrator.go_to(system, time, state, step::of_lane(&self.end_derivative, lane), longest_step);
+        }
+        is_accepted
+    }
+
+    /// The step of a lane.
+    pub fn step(&self, lane: usize) -> Step<N> {
+        Step {
+            start_time: self.time.0[lane],
+            end_time: self.end_time.0[lane],
+            start: step::of_lane(&self.state, lane),
+            end: step::of_lane(&self.trial.outcome.end, lane),
+            start_derivative: step::of_lane(&self.derivative, lane),
+            end_derivative: step::of_lane(&self.end_derivative, lane),
+            inside: Inside::Explicit(self.trial.kept_slopes_of(lane)),
+        }
     }
 
     #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "there are no lanes"))]
     #[inline(always)]
-    fn attempt_here<M: System<Lanes<L>, N>>(&mut self, system: &M) {
-        let times = [self.time, self.end_time];
-        (self.trial, self.end_derivative) =
-            step::attempt_in_lanes(system, times, &self.state, &self.derivative, self.length);
+    fn attempt_here<M: LaneBounds<N, L>>(&mut self, system: &M) {
+        let Self { time, end_time, state, derivative, length, trial, .. } = self;
+        self.end_derivative = step::attempt_in_lanes(system, [*time, *end_time], state, derivative, *length, trial);
+        self.error = self.tolerances.error(self.length, &self.state, &self.trial.outcome);
+        self.longest_step = system.longest_step(self.end_time, &self.trial.outcome.end);
+    }
+}
+
+/// What is computed with the instructions for lanes, as far as it is in line: a closure or a function of its own is without them.
+pub trait LaneJob {
+    /// What is found.
+    type Output;
+
+    /// Computes it; always in line.
+    fn run(self) -> Self::Output;
+}
+
+/// Trial steps of a system.
+struct Attempt<'a, M, const N: usize, const L: usize> {
+    steps: &'a mut LaneSteps<N, L>,
+    system: &'a M,
+}
+
+impl<M: LaneBounds<N, L>, const N: usize, const L: usize> LaneJob for Attempt<'_, M, N, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.steps.attempt_here(self.system);
     }
 }
 
@@ -106,7 +172,7 @@ fn widest() -> Option<isa::InstructionSet> {
 mod isa {
     use std::sync::LazyLock;
 
-    use super::{LaneSteps, Lanes, System};
+    use super::LaneJob;
 
     #[derive(Clone, Copy, Debug)]
     pub(super) enum InstructionSet {
@@ -134,13 +200,13 @@ mod isa {
     }
 
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
-    fn by_avx512<M: System<Lanes<L>, N>, const N: usize, const L: usize>(steps: &mut LaneSteps<N, L>, system: &M) {
-        steps.attempt_here(system);
+    fn by_avx512<J: LaneJob>(job: J) -> J::Output {
+        job.run()
     }
 
     #[target_feature(enable = "avx2")]
-    fn by_avx2<M: System<Lanes<L>, N>, const N: usize, const L: usize>(steps: &mut LaneSteps<N, L>, system: &M) {
-        steps.attempt_here(system);
+    fn by_avx2<J: LaneJob>(job: J) -> J::Output {
+        job.run()
     }
 
     impl InstructionSet {
@@ -151,19 +217,15 @@ mod isa {
             }
         }
 
-        pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
-            self,
-            steps: &mut LaneSteps<N, L>,
-            system: &M,
-        ) {
+        pub(super) fn run<J: LaneJob>(self, job: J) -> J::Output {
             // The one place where the program is not safe by its types alone: functions of wider instructions may be called where the processor
             // has them, which is asked above and nowhere else.
             #[expect(unsafe_code, reason = "the compiler does not know on which processor the program will run")]
             match self {
                 // SAFETY: the processor has these instructions.
-                Self::Avx512 => unsafe { by_avx512(steps, system) },
+                Self::Avx512 => unsafe { by_avx512(job) },
                 // SAFETY: the processor has these instructions.
-                Self::Avx2 => unsafe { by_avx2(steps, system) },
+                Self::Avx2 => unsafe { by_avx2(job) },
             }
         }
     }
@@ -172,7 +234,7 @@ mod isa {
 /// Other processors have vectors of two numbers at least, in which lanes gain little.
 #[cfg(not(target_arch = "x86_64"))]
 mod isa {
-    use super::{LaneSteps, Lanes, System};
+    use super::LaneJob;
 
     #[derive(Clone, Copy, Debug)]
     pub(super) enum InstructionSet {}
@@ -186,11 +248,7 @@ mod isa {
             match self {}
         }
 
-        pub(super) fn attempt<M: System<Lanes<L>, N>, const N: usize, const L: usize>(
-            self,
-            _: &mut LaneSteps<N, L>,
-            _: &M,
-        ) {
+        pub(super) fn run<J: LaneJob>(self, _: J) -> J::Output {
             match self {}
         }
     }

@@ -106,7 +106,7 @@ pub(super) fn attempt<F: System<S, N>, S: Scalar, const N: usize>(
     Trial { slopes, outcome }
 }
 
-/// Tries the steps of several integrators, which end at some times; and the rates of change there.
+/// Tries the steps of several integrators, which end at some times; returns the rates of change there. `trial`: where they are tried.
 #[inline(always)]
 pub(super) fn attempt_in_lanes<F: System<Lanes<L>, N>, const N: usize, const L: usize>(
     system: &F,
@@ -114,14 +114,15 @@ pub(super) fn attempt_in_lanes<F: System<Lanes<L>, N>, const N: usize, const L: 
     start: &[Lanes<L>; N],
     derivative: &[Lanes<L>; N],
     length: Lanes<L>,
-) -> (Trial<Lanes<L>, N>, [Lanes<L>; N]) {
-    let mut slopes = [[Lanes([0.0; L]); N]; STAGES];
+    trial: &mut Trial<Lanes<L>, N>,
+) -> [Lanes<L>; N] {
+    let Trial { slopes, outcome: of_trial } = trial;
     slopes[0] = *derivative;
     let mut stage = 1;
     // The system, which is long, stands here once, and not once for every stage and the end.
     let (mean, end, end_derivative) = loop {
         let is_end = stage == STAGES;
-        let mean = sum(&slopes, if is_end { tableau::WEIGHTS } else { tableau::STAGES[stage - 1] });
+        let mean = sum(&slopes[..], if is_end { tableau::WEIGHTS } else { tableau::STAGES[stage - 1] });
         let then = if is_end { end_time } else { later(time, length, tableau::NODES[stage - 1]) };
         let there = advanced(start, &mean, length);
         let slope = system.derivative(then, &there);
@@ -131,8 +132,8 @@ pub(super) fn attempt_in_lanes<F: System<Lanes<L>, N>, const N: usize, const L: 
         slopes[stage] = slope;
         stage += 1;
     };
-    let outcome = outcome(&slopes, &mean, end);
-    (Trial { slopes, outcome }, end_derivative)
+    *of_trial = outcome(slopes, &mean, end);
+    end_derivative
 }
 
 /// Where the slopes of stages lead, with their mean, to an end.
@@ -159,13 +160,6 @@ impl<const N: usize, const L: usize> Trial<Lanes<L>, N> {
     pub(super) fn none() -> Self {
         let none = [Lanes([0.0; L]); N];
         Self { slopes: [none; STAGES], outcome: Outcome { end: none, error_fifth: none, error_third: none } }
-    }
-
-    /// Where that of one lane leads.
-    pub(super) fn outcome_of(&self, lane: usize) -> Outcome<f64, N> {
-        let Outcome { end, error_fifth, error_third } = &self.outcome;
-        let [end, error_fifth, error_third] = [end, error_fifth, error_third].map(|numbers| of_lane(numbers, lane));
-        Outcome { end, error_fifth, error_third }
     }
 
     /// The slopes of one lane.

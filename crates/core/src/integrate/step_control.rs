@@ -4,14 +4,13 @@ use std::array::from_fn;
 
 use super::{IntegrationError, Limits, Statistics, StepBounds, radau, step};
 use crate::elementary::pow;
+use crate::scalar::{Lanes, Real};
 
 /// The control of the length of the steps: each as long as the tolerance allows.
 #[derive(Debug)]
 pub(super) struct StepControl<'a, const N: usize> {
     limits: Limits<'a>,
-    magnitudes: [f64; N],
-    /// How many numbers of the state have errors that count: those of a finite magnitude.
-    counted: f64,
+    tolerances: Tolerances<f64, N>,
     /// Of the last accepted step's end, s.
     pub(super) time: f64,
     /// Proposed for the next step, s.
@@ -28,6 +27,80 @@ pub(super) struct StepControl<'a, const N: usize> {
     corners: CornerSteps,
     pub(super) stiffness: Stiffness,
     pub(super) statistics: Statistics,
+}
+
+/// What errors of a state are measured by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tolerances<S, const N: usize> {
+    /// Relative to the size of a number.
+    relative: S,
+    /// The least size that each number counts as having.
+    magnitudes: [S; N],
+    /// How many numbers of the state have errors that count: those of a finite magnitude.
+    counted: S,
+}
+
+/// The error of an explicit trial step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TrialError<S> {
+    /// As a multiple of the tolerance.
+    error: S,
+    /// How many times as long a step would have the tolerance as its error.
+    fitting: S,
+}
+
+impl<S: Real, const N: usize> Tolerances<S, N> {
+    /// The size of a number of the state, to which its error is relative.
+    #[inline(always)]
+    fn size_of(&self, i: usize, start: &[S; N], end: &[S; N]) -> S {
+        start[i].abs().max(end[i].abs()).max(self.magnitudes[i])
+    }
+
+    /// The error of an explicit trial step of a length, s: the estimate of order 5, damped by that of order 3.
+    #[inline(always)]
+    pub(super) fn error(&self, length: S, start: &[S; N], trial: &step::Outcome<S, N>) -> TrialError<S> {
+        let [mut fifth, mut third] = [S::zero(); 2];
+        for i in 0..N {
+            let weight = (self.relative * self.size_of(i, start, &trial.end)).recip();
+            let [of_fifth, of_third] = [trial.error_fifth[i] * weight, trial.error_third[i] * weight];
+            fifth += of_fifth * of_fifth;
+            third += of_third * of_third;
+        }
+        let denominator = ((fifth + third * 0.01) * self.counted).sqrt();
+        // Only the root of 0 is so small.
+        let is_exact = denominator.less_than(f64::MIN_POSITIVE);
+        let error = S::select(is_exact, S::from(f64::MIN_POSITIVE), length * fifth / denominator);
+        TrialError { error, fitting: error.sqrt().sqrt().sqrt().recip() }
+    }
+}
+
+impl<const N: usize, const L: usize> Tolerances<Lanes<L>, N> {
+    /// Those of none.
+    pub(super) fn none() -> Self {
+        let none = Lanes([0.0; L]);
+        Self { relative: none, magnitudes: [none; N], counted: none }
+    }
+
+    /// Puts those of an integrator into a lane.
+    pub(super) fn put(&mut self, lane: usize, control: &StepControl<N>) {
+        let Tolerances { relative, magnitudes, counted } = &control.tolerances;
+        self.relative.0[lane] = *relative;
+        self.counted.0[lane] = *counted;
+        for (lanes, magnitude) in self.magnitudes.iter_mut().zip(magnitudes) {
+            lanes.0[lane] = *magnitude;
+        }
+    }
+}
+
+impl<const L: usize> TrialError<Lanes<L>> {
+    /// That of none.
+    pub(super) fn none() -> Self {
+        Self { error: Lanes([0.0; L]), fitting: Lanes([0.0; L]) }
+    }
+
+    pub(super) fn of_lane(&self, lane: usize) -> TrialError<f64> {
+        TrialError { error: self.error.0[lane], fitting: self.fitting.0[lane] }
+    }
 }
 
 /// Predictive control of the step length: the length at which the error would be the tolerance changes from step to step, and the next change is
@@ -105,8 +178,7 @@ impl<'a, const N: usize> StepControl<'a, N> {
         let statistics = Statistics { evaluations: 2, ..Statistics::default() };
         let mut control = Self {
             limits,
-            magnitudes,
-            counted,
+            tolerances: Tolerances { relative: limits.relative_tolerance, magnitudes, counted },
             time,
             length: 0.0,
             stride: 0.0,
@@ -223,12 +295,15 @@ impl<'a, const N: usize> StepControl<'a, N> {
         }
     }
 
-    /// Whether the error of the trial step is small enough; proposes the length of the next one.
-    pub(super) fn accepts(&mut self, start: &[f64; N], trial: &step::Outcome<f64, N>) -> bool {
-        let error = self.error(start, trial);
+    /// The error of an explicit trial step from a start.
+    pub(super) fn error(&self, start: &[f64; N], trial: &step::Outcome<f64, N>) -> TrialError<f64> {
+        self.tolerances.error(self.length, start, trial)
+    }
+
+    /// Whether the error of an explicit trial step is small enough; proposes the length of the next one.
+    pub(super) fn accepts(&mut self, TrialError { error, fitting }: TrialError<f64>) -> bool {
         self.statistics.evaluations += step::TRIAL_EVALUATIONS;
-        // The eighth root.
-        let accepted = self.decide(error, 1.0 / error.sqrt().sqrt().sqrt());
+        let accepted = self.decide(error, fitting);
         self.statistics.evaluations += usize::from(accepted);
         accepted
     }
@@ -269,28 +344,9 @@ impl<'a, const N: usize> StepControl<'a, N> {
 
     /// The size of a change of the state in a step, as a multiple of the tolerance.
     pub(super) fn size(&self, change: &[f64; N], start: &[f64; N], end: &[f64; N]) -> f64 {
-        let part = |i: usize| change[i] / (self.limits.relative_tolerance * self.size_of(i, start, end));
-        ((0..N).map(|i| part(i).powi(2)).sum::<f64>() / self.counted).sqrt()
-    }
-
-    /// The size of a number of the state, to which its error is relative.
-    fn size_of(&self, i: usize, start: &[f64; N], end: &[f64; N]) -> f64 {
-        start[i].abs().max(end[i].abs()).max(self.magnitudes[i])
-    }
-
-    /// The error of the trial step as a multiple of the tolerance: the estimate of order 5, damped by that of order 3.
-    fn error(&self, start: &[f64; N], trial: &step::Outcome<f64, N>) -> f64 {
-        let [mut fifth, mut third] = [0.0; 2];
-        for i in 0..N {
-            let weight = 1.0 / (self.limits.relative_tolerance * self.size_of(i, start, &trial.end));
-            fifth += (trial.error_fifth[i] * weight).powi(2);
-            third += (trial.error_third[i] * weight).powi(2);
-        }
-        if fifth == 0.0 && third == 0.0 {
-            return f64::MIN_POSITIVE;
-        }
-        let denominator = ((fifth + third * 0.01) * self.counted).sqrt();
-        self.length * fifth / denominator
+        let Tolerances { relative, counted, .. } = self.tolerances;
+        let part = |i: usize| change[i] / (relative * self.tolerances.size_of(i, start, end));
+        ((0..N).map(|i| part(i).powi(2)).sum::<f64>() / counted).sqrt()
     }
 
     /// The length of the first step, from the sizes of the first and second derivative: their ratio is the time in which the rates change, and
@@ -300,8 +356,8 @@ impl<'a, const N: usize> StepControl<'a, N> {
     /// flights it came hundreds of times too short.
     fn first_step<F: StepBounds<N>>(&self, system: &F, state: &[f64; N], slope: &[f64; N]) -> f64 {
         let norm = |vector: &[f64; N]| {
-            let size = |i: usize| state[i].abs().max(self.magnitudes[i]);
-            let component = |i: usize| vector[i] / (self.limits.relative_tolerance * size(i));
+            let component =
+                |i: usize| vector[i] / (self.tolerances.relative * self.tolerances.size_of(i, state, state));
             (0..N).map(component).map(|x| x * x).sum::<f64>().sqrt()
         };
         let first = norm(slope);

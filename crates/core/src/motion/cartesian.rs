@@ -5,8 +5,8 @@ use num_dual::DualSVec64;
 use super::state::coordinates;
 use super::{Forces, Formulation, Singularity, State, StateRate};
 use crate::coordinates::PlanetFixed;
-use crate::integrate::{StepBounds, System, jacobian};
-use crate::scalar::{Over, Scalar};
+use crate::integrate::{LaneBounds, StepBounds, System, jacobian};
+use crate::scalar::{Lanes, Over, Scalar};
 
 /// The state (x, y, z, vx, vy, vz), in m and m/s, and maybe heat load and mass.
 #[derive(Clone, Debug)]
@@ -73,6 +73,21 @@ where
     fn jacobian(&self, time: f64, numbers: &[f64; N]) -> [[f64; N]; N] {
         // Nothing changes fast by heat load and mass.
         jacobian::<_, N, 6>(self, time, numbers)
+    }
+}
+
+impl<const N: usize, const L: usize> LaneBounds<N, L> for Cartesian<Lanes<L>>
+where
+    Self: System<Lanes<L>, N>,
+{
+    #[inline(always)]
+    fn longest_step(&self, time: Lanes<L>, numbers: &[Lanes<L>; N]) -> Option<Lanes<L>> {
+        // Thrusts may brake one vehicle to rest and another not.
+        if self.0.burn.is_some() {
+            return None;
+        }
+        let state = State::of(PlanetFixed::from(coordinates(numbers)), numbers);
+        Some(self.0.longest_unbraked_step(time, &state))
     }
 }
 

@@ -52,9 +52,11 @@ pub(super) fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
 }
 
 /// How fast the share of the lift that is left grows with cos γ in the cone, per rad: with x = cos γ/ε, 30 x² (1 - x)²/ε. Outside it is 0.
-pub(super) fn lift_fade_slope(cos_gamma: f64) -> f64 {
+#[inline(always)]
+pub(super) fn lift_fade_slope<S: Scalar>(cos_gamma: S) -> S {
     let x = cos_gamma / LIFT_FADE_ANGLE;
-    if x < 1.0 { 30.0 * (x * (1.0 - x)).powi(2) / LIFT_FADE_ANGLE } else { 0.0 }
+    let root = x * (-x + 1.0);
+    S::select(x.less_than(1.0), root * root * 30.0 / LIFT_FADE_ANGLE, S::zero())
 }
 
 /// A velocity less that of a wind to the east and to the north, m/s, at a planet-fixed position, m.

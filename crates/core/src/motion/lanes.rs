@@ -1,8 +1,53 @@
 //! The forces on several vehicles side by side.
 
-use super::{Burn, Forces, LookupCache, Parameters};
+use std::cell::OnceCell;
+
+use num_dual::Dual64;
+
+use super::{Burn, Forces, Loads, LookupCache, Parameters, State, Switch};
+use crate::heating::HeatFlux;
 use crate::parachute::{Canopies, Filling};
-use crate::scalar::Lanes;
+use crate::scalar::{DualLanes, Lanes};
+
+/// What is read at the end of a step, with its rates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EndReadings<S = Dual64> {
+    /// m.
+    pub(crate) altitude: S,
+    /// The quantities of the switches, where there are any.
+    pub(crate) switches: Option<[S; Switch::ALL.len()]>,
+    /// Where somebody asks for them, with cos²γ of the velocity relative to the air.
+    pub(crate) loads: Option<(Loads<S>, S)>,
+}
+
+impl<const L: usize> EndReadings<DualLanes<L>> {
+    /// Those of one lane.
+    pub(crate) fn of_lane(&self, lane: usize) -> EndReadings {
+        let of_lane = |number: DualLanes<L>| number.of_lane(lane);
+        let loads = self.loads.as_ref().map(|(loads, cos_squared_gamma)| {
+            let loads = Loads {
+                altitude: of_lane(loads.altitude),
+                density: of_lane(loads.density),
+                speed: of_lane(loads.speed),
+                air_speed: of_lane(loads.air_speed),
+                mach: loads.mach.map(of_lane),
+                dynamic_pressure: of_lane(loads.dynamic_pressure),
+                deceleration: of_lane(loads.deceleration),
+                load_factor: of_lane(loads.load_factor),
+                heat_flux: loads.heat_flux.map(|HeatFlux { convective, radiative }| HeatFlux {
+                    convective: of_lane(convective),
+                    radiative: of_lane(radiative),
+                }),
+            };
+            (loads, of_lane(*cos_squared_gamma))
+        });
+        EndReadings {
+            altitude: of_lane(self.altitude),
+            switches: self.switches.map(|switches| switches.map(of_lane)),
+            loads,
+        }
+    }
+}
 
 impl Forces {
     /// Whether these forces and others differ in numbers alone that lanes hold: their models, their mode, and what burns and is open.
@@ -87,6 +132,27 @@ impl Forces {
 }
 
 impl<const L: usize> Forces<Lanes<L>> {
+    /// What is read at the ends of steps, lane by lane to the digits that each has alone.
+    #[inline(always)]
+    pub(crate) fn end_readings(
+        &self,
+        time: DualLanes<L>,
+        state: &State<DualLanes<L>>,
+        with_loads: bool,
+    ) -> EndReadings<DualLanes<L>> {
+        if !with_loads && !self.has_switches() {
+            let altitude = self.models.planet.shape.altitude(&state.position);
+            return EndReadings { altitude, switches: None, loads: None };
+        }
+        let flow = self.flow_with_mach(time, state);
+        let altitude = flow.arguments.altitude;
+        // Not closures, which would leave the instructions of lanes.
+        let loads = if with_loads { Some((self.loads_in(time, state, &flow), flow.cos_squared_gamma())) } else { None };
+        let switches =
+            if self.has_switches() { Some(self.readings_with(time, state, &OnceCell::from(flow))) } else { None };
+        EndReadings { altitude, switches, loads }
+    }
+
     /// Puts the numbers of forces that [are alike](Forces::are_alike) into a lane.
     pub(crate) fn put(&mut self, lane: usize, one: &Forces) {
         let put = |lanes: &mut Lanes<L>, number: f64| lanes.0[lane] = number;

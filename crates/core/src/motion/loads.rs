@@ -61,17 +61,13 @@ impl<S: Scalar> Loads<S> {
 
 impl<P: Scalar> Forces<P> {
     /// The loads in a state.
-    pub fn loads<S: Over<P> + Scalar<Mask = bool>>(&self, time: S, state: &State<S>) -> Loads<S> {
+    pub fn loads<S: Over<P>>(&self, time: S, state: &State<S>) -> Loads<S> {
         self.loads_in(time, state, &self.flow_with_mach(time, state))
     }
 
     /// The same in the air that meets the vehicle, with its Mach number.
-    pub(crate) fn loads_in<S: Over<P> + Scalar<Mask = bool>>(
-        &self,
-        time: S,
-        state: &State<S>,
-        flow: &Flow<S>,
-    ) -> Loads<S> {
+    #[inline(always)]
+    pub(crate) fn loads_in<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Loads<S> {
         let State { position, velocity, .. } = state;
         let Directions { radius, speed, up, ahead, .. } = &flow.directions;
         let density = self.density(flow);
@@ -84,9 +80,7 @@ impl<P: Scalar> Forces<P> {
             }
             specific_force() + self.fall::<false, _>(state, flow)
         };
-        let deceleration = if flow.arguments.ground_speed.less_than(f64::MIN_POSITIVE) {
-            -length(&acceleration())
-        } else if matches!(self.models.wind, Wind::Still) && self.burn.is_none() {
+        let of_moving = if matches!(self.models.wind, Wind::Still) && self.burn.is_none() {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
             let air = self.air::<false, _>(time, flow);
             let outward = position.x * ahead.x + position.y * ahead.y;
@@ -96,6 +90,9 @@ impl<P: Scalar> Forces<P> {
         } else {
             -acceleration().dot(velocity) * flow.arguments.ground_speed.recip()
         };
+        let at_rest = flow.arguments.ground_speed.less_than(f64::MIN_POSITIVE);
+        let deceleration =
+            if S::any(at_rest) { S::select(at_rest, -length(&acceleration()), of_moving) } else { of_moving };
         let load_factor = if self.held {
             // What holds it carries it.
             length(&self.fall::<false, _>(state, flow)) * STANDARD_GRAVITY.recip()
@@ -118,6 +115,7 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The air that meets the vehicle in a state, with its Mach number where the atmosphere has a speed of sound.
+    #[inline(always)]
     pub(crate) fn flow_with_mach<S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
         let mut flow = self.flow::<false, _>(time, state);
         if flow.arguments.mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
@@ -134,6 +132,7 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The load factor of a vehicle without thrust.
+    #[inline(always)]
     fn aerodynamic_load_factor<S: Over<P>>(&self, time: S, flow: &Flow<S>, dynamic_pressure: S) -> S {
         // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
         let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, flow);
@@ -148,6 +147,7 @@ impl<P: Scalar> Forces<P> {
         dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY)
     }
 
+    #[inline(always)]
     fn lift_and_drag_coefficient<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
         let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
         let Coefficients { lift, drag } =
@@ -158,6 +158,7 @@ impl<P: Scalar> Forces<P> {
     /// cos²γ of the velocity relative to the air, the squared sine of its angle to the radius; 0 at rest.
     pub fn cos_squared_angle_to_air<S: Over<P>>(&self, state: &State<S>) -> S {
         let altitude = self.models.planet.shape.altitude(&state.position);
+        // As it is in the flow.
         let (Directions { left, .. }, _) = self.motion_in_air::<false, _>(altitude, state);
         left.dot(&left)
     }

@@ -95,7 +95,8 @@ impl<P: Scalar> Forces<P> {
 }
 
 /// Relative to inertial space, in components of the planet-fixed frame, m/s.
-fn inertial_velocity<S: Scalar>(planet: &Planet, state: &State<S>) -> Vector3<S> {
+#[inline(always)]
+pub(super) fn inertial_velocity<S: Scalar>(planet: &Planet, state: &State<S>) -> Vector3<S> {
     let State { position, velocity, .. } = state;
     let rate = planet.rotation_rate;
     Vector3::new(velocity.x - position.y * rate, velocity.y + position.x * rate, velocity.z)

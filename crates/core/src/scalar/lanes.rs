@@ -4,7 +4,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use super::{LookUp, Scalar};
+use super::{LookUp, Real, Scalar};
 use crate::elementary;
 
 /// `L` numbers that go through the same operations, each by itself: lane by lane the digits are those of `f64`.
@@ -110,6 +110,15 @@ operators! {
     Mul mul, MulAssign mul_assign;
 }
 
+impl<const L: usize> Div for Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self::each(|lane| self.0[lane] / other.0[lane])
+    }
+}
+
 impl<const L: usize> Div<f64> for Lanes<L> {
     type Output = Self;
 
@@ -176,6 +185,11 @@ impl<const L: usize> Scalar for Lanes<L> {
             *answer = number < other;
         }
         mask
+    }
+
+    #[inline(always)]
+    fn any(mask: [bool; L]) -> bool {
+        mask.iter().fold(false, |any, one| any | one)
     }
 
     #[inline(always)]
@@ -248,5 +262,22 @@ impl<const L: usize> Scalar for Lanes<L> {
             *angle = elementary::atan2(*angle, x);
         }
         angles
+    }
+}
+
+impl<const L: usize> Real for Lanes<L> {
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::each(|lane| self.0[lane].min(other.0[lane]))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::each(|lane| self.0[lane].max(other.0[lane]))
     }
 }

@@ -10,7 +10,7 @@ use super::step_view::StepView;
 use crate::coordinates::GreatCircle;
 use crate::event::{Condition, Direction, Effect, Quantity, Trigger};
 use crate::integrate::event::{self, Inside, PredictedCrossing};
-use crate::motion::{Forces, Formulation, StateRate};
+use crate::motion::{Forces, Formulation, Loads, StateRate};
 use crate::scalar::Scalar;
 use crate::scenario::Case;
 use crate::trajectory::Termination;
@@ -33,7 +33,7 @@ pub(super) struct ConditionDetector {
 }
 
 /// Every quantity, with its rate.
-type Readings = [Dual64; Quantity::ALL.len()];
+pub(super) type Readings = [Dual64; Quantity::ALL.len()];
 
 /// A condition, and the action that follows when it is met.
 struct PendingCondition {
@@ -154,9 +154,18 @@ impl ConditionDetector {
 
     /// Every quantity for which a condition waits.
     fn read(&self, forces: &Forces, moment: &StateRate) -> Readings {
-        let mut quantities = self.last;
         let loads = OnceCell::new();
-        let loads = || *loads.get_or_init(|| forces.loads(moment.time, &moment.state));
+        self.read_with(forces, moment, || *loads.get_or_init(|| forces.loads(moment.time, &moment.state)))
+    }
+
+    /// The same with the loads at the moment, for which it asks where it needs them.
+    pub(super) fn read_with(
+        &self,
+        forces: &Forces,
+        moment: &StateRate,
+        loads: impl Fn() -> Loads<Dual64> + Copy,
+    ) -> Readings {
+        let mut quantities = self.last;
         for watched in &self.watched {
             let reading = forces.quantity_with(*watched, moment, &self.track, loads);
             quantities[*watched as usize] = self.continued(*watched, reading);
@@ -301,6 +310,42 @@ impl ConditionDetector {
         self.all.iter().any(|pending| pending.status == Status::Due)
     }
 
+    /// Whether nothing happens in a step with such readings at its end, nor is expected in the next one; their lengths, s. Conditions on the time,
+    /// beyond which no step goes, are not asked.
+    pub(super) fn is_quiet(&self, forces: &Forces, ends: &Readings, [length, next]: [f64; 2]) -> bool {
+        let mut waiting = self.armed().filter(|(_, pending)| pending.condition.quantity != Quantity::Time);
+        waiting.all(|(_, pending)| {
+            let [start, end] = [&self.last, ends].map(|readings| pending.before_among(readings));
+            !event::may_cross(start, end, length, forces.has_tables())
+                && !(pending.changes_flight && event::may_fall_within(end, next))
+        })
+    }
+
+    /// Goes on to the end of a step of a length, s, by the readings there. Conditions that are met there, or in a step that is cut there are on their
+    /// values to rounding, are due.
+    pub(super) fn go_on(&mut self, ends: Readings, length: f64, is_cut: bool) {
+        self.before = std::mem::replace(&mut self.last, ends);
+        self.length_before = Some(length);
+        let Self { all, before, last, .. } = self;
+        for pending in all.iter_mut().filter(|pending| pending.status == Status::Armed) {
+            let [last, next] = [&*before, &*last].map(|quantities| pending.before_among(quantities).re);
+            // Where conditions are met together, one of them cuts the step, and the others are on their values to rounding.
+            let reached = if is_cut { pending.condition.resolution() } else { 0.0 };
+            if last > reached && next <= reached {
+                pending.status = Status::Due;
+            }
+            // Once well on the near side, it is met on the value itself.
+            if next > 2.0 * pending.margin {
+                pending.margin = 0.0;
+            }
+        }
+    }
+
+    /// Whether one of the loads is watched.
+    pub(super) fn watches_loads(&self) -> bool {
+        self.watched.iter().any(|quantity| quantity.is_load())
+    }
+
     /// Whether nothing is watched.
     pub(super) fn is_empty(&self) -> bool {
         self.all.is_empty()
@@ -391,25 +436,11 @@ impl Detector for ConditionDetector {
         if self.is_empty() {
             return;
         }
-        for place in 0..self.watched.len() {
-            let quantity = self.watched[place];
-            let next = self.at_end(quantity, step);
-            self.before[quantity as usize] = std::mem::replace(&mut self.last[quantity as usize], next);
+        let mut ends = self.last;
+        for watched in &self.watched {
+            ends[*watched as usize] = self.at_end(*watched, step);
         }
-        self.length_before = Some(step.length());
-        let Self { all, before, last, .. } = self;
-        for pending in all.iter_mut().filter(|pending| pending.status == Status::Armed) {
-            let [last, next] = [&*before, &*last].map(|quantities| pending.before_among(quantities).re);
-            // Where conditions are met together, one of them cuts the step, and the others are on their values to rounding.
-            let reached = if step.is_cut() { pending.condition.resolution() } else { 0.0 };
-            if last > reached && next <= reached {
-                pending.status = Status::Due;
-            }
-            // Once well on the near side, it is met on the value itself.
-            if next > 2.0 * pending.margin {
-                pending.margin = 0.0;
-            }
-        }
+        self.go_on(ends, step.length(), step.is_cut());
     }
 }
 

@@ -4,17 +4,17 @@ use std::array::from_fn;
 
 use nalgebra::Vector3;
 
-use super::SimulationError;
 use super::conditions::{Cause, ConditionDetector, moments_up_to};
 use super::detector::{Detector, cut_at_first};
 use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boundary_in_time};
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
+use super::{Observer, QuietStep, SimulationError};
 use crate::event::{Effect, Separation, ThrustCommand, Tilt};
 use crate::integrate::event::PredictedCrossing;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{self, Chatter, Formulation, MASS, ModelMode, Singularity, State, StateRate};
+use crate::motion::{self, Chatter, EndReadings, Formulation, MASS, ModelMode, Singularity, State, StateRate};
 use crate::propulsion::{Impulse, ThrustAxis};
 use crate::scenario::{Change, Phase, Scenario};
 use crate::trajectory::{Arrival, EventRecord, Instant, SeparationRecord, Termination, Warning};
@@ -155,14 +155,18 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     }
 
     /// Cuts a step at the first place that a detector locates in it, shows what is left to `observe`, and applies the changes at its end;
-    /// returns the end of the flight, if that was it.
+    /// returns the end of the flight, if that was it. `read`: what was read at its end already.
     pub(super) fn pass(
         &mut self,
         step: &Step<N>,
+        read: Option<&EndReadings>,
         observe: &mut impl FnMut(&StepView<F, N>) -> Result<(), SimulationError>,
     ) -> Result<Option<Arrival>, SimulationError> {
         let Self { motion, integrator, stop_altitude, model_boundaries, conditions, evaluations, log, .. } = self;
         let mut view = StepView::new(motion, step, log.phases.len());
+        if let Some(read) = read {
+            view.note(read);
+        }
         // Each detector sees what the ones before have left of the step, so that the last that cuts has the first place. The stop altitude
         // comes first: the boundary of a table that ends there lies beyond it by a rounding error.
         let at_stop_altitude = cut_at_first(&mut view, stop_altitude, integrator, evaluations);
@@ -204,6 +208,47 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             self.look_ahead();
         }
         Ok(end)
+    }
+
+    /// Passes over a step in which nothing happens that a detector or the observer would have to look for inside it, nor is expected in the next
+    /// one, as its ends tell: what [`pass`](Self::pass) does then, without the step. Returns whether it is one; otherwise nothing is done.
+    /// The integrator is at its end, where so much was `read`.
+    pub(super) fn pass_quietly<O: Observer<F, N>>(&mut self, read: &EndReadings, observer: &mut O) -> bool {
+        let Self { motion, integrator, stop_altitude, model_boundaries, conditions, log, .. } = self;
+        let (forces, time, state) = (motion.forces(), integrator.time(), integrator.state());
+        let length = time - self.time;
+        let lengths = [length, integrator.proposed_length()];
+        let is_regular = motion.singularity(state, SINGULAR).is_none() && !forces.thrusts_by_velocity();
+        let is_left = state.get(MASS).is_none_or(|mass| *mass > NOTHING * self.phase.vehicle.mass);
+        if time >= self.horizon
+            || !is_regular
+            || !is_left
+            || !stop_altitude.is_quiet(read.altitude, lengths)
+            || !read.switches.is_none_or(|ends| model_boundaries.is_quiet(forces, &ends, lengths))
+        {
+            return false;
+        }
+        let conditions_read = (!conditions.is_empty()).then(|| {
+            let now = StateRate::of::<F, N>(time, state, integrator.derivative());
+            let loads = || read.loads.map_or_else(|| forces.loads(now.time, &now.state), |(loads, _)| loads);
+            conditions.read_with(forces, &now, loads)
+        });
+        if conditions_read.as_ref().is_some_and(|ends| !conditions.is_quiet(forces, ends, lengths)) {
+            return false;
+        }
+        let step = QuietStep { forces, phase: log.phases.len(), start_time: self.time, end_time: time, read };
+        if !observer.observe_quietly(&step) {
+            return false;
+        }
+        stop_altitude.go_on(read.altitude, length);
+        if let Some(ends) = &read.switches {
+            model_boundaries.go_on(ends, length);
+        }
+        if let Some(ends) = conditions_read {
+            conditions.go_on(ends, length, false);
+        }
+        (self.time, self.state) = (time, *state);
+        true
     }
 
     /// Applies the changes at the end of a step: events, burnout, inflations and the mode of the models; the integration restarts there.
@@ -463,6 +508,11 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
     /// The number of the present phase and its mode, on which the forces depend.
     pub(super) fn phase_and_mode(&self) -> (usize, ModelMode) {
         (self.log.phases.len(), self.motion.forces().mode())
+    }
+
+    /// Whether a condition waits for one of the loads.
+    pub(super) fn watches_loads(&self) -> bool {
+        self.conditions.watches_loads()
     }
 
     /// Whether the vehicle is held on the ground.

@@ -2,10 +2,10 @@
 
 use super::flight::Flight;
 use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, record};
-use crate::integrate::{AnyStep, LaneSteps, Step, System};
+use crate::integrate::{AnyStep, LaneBounds, LaneJob, LaneSteps, Step};
 use crate::interrupt::Interrupt;
-use crate::motion::{Cartesian, Forces, Formulation};
-use crate::scalar::Lanes;
+use crate::motion::{Cartesian, EndReadings, Forces, Formulation, State};
+use crate::scalar::{DualLanes, Lanes};
 use crate::scenario::{Case, Equations, Scenario, StateLayout};
 use crate::trajectory::{Arrival, Ends, Extremes, Flown};
 
@@ -77,7 +77,7 @@ impl<'a, T> Outcomes<'a, T> {
         observer: impl Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
     ) where
         Cartesian: Formulation<N>,
-        Cartesian<Lanes<LANES>>: System<Lanes<LANES>, N>,
+        Cartesian<Lanes<LANES>>: LaneBounds<N, LANES>,
         AnyStep: From<Step<N>>,
     {
         let of_layout = |scenario: &Scenario| {
@@ -131,7 +131,7 @@ struct Scheduler<'a, 'b, T, M, O, const N: usize> {
     interrupt: &'a dyn Interrupt,
     observer: M,
     /// By their places; those that have ended leave room for others.
-    under_way: Vec<Option<Flying<'a, O, N>>>,
+    under_way: Vec<Option<Box<Flying<'a, O, N>>>>,
     /// The places of flights that wait for lanes; the forces of a group are alike.
     groups: Vec<Vec<usize>>,
 }
@@ -144,12 +144,39 @@ struct Flying<'a, O, const N: usize> {
     observer: O,
 }
 
+impl<O: Observer<Cartesian, N>, const N: usize> Flying<'_, O, N>
+where
+    Cartesian: Formulation<N>,
+{
+    /// Whether somebody takes the loads at the ends of its steps.
+    fn takes_loads(&self) -> bool {
+        self.observer.takes_loads() || self.flight.watches_loads()
+    }
+}
+
+/// What is read at the ends of steps: times, s, and states then.
+struct ReadingsOf<'a> {
+    forces: &'a Forces<Lanes<LANES>>,
+    time: DualLanes<LANES>,
+    state: State<DualLanes<LANES>>,
+    with_loads: bool,
+}
+
+impl LaneJob for ReadingsOf<'_> {
+    type Output = EndReadings<DualLanes<LANES>>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.forces.end_readings(self.time, &self.state, self.with_loads)
+    }
+}
+
 impl<T, M, O, const N: usize> Scheduler<'_, '_, T, M, O, N>
 where
     M: Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
     O: Observer<Cartesian, N, Outcome = T>,
     Cartesian: Formulation<N>,
-    Cartesian<Lanes<LANES>>: System<Lanes<LANES>, N>,
+    Cartesian<Lanes<LANES>>: LaneBounds<N, LANES>,
 {
     /// Flies all, the largest group of those whose forces are alike first, as the lanes are full the longest then.
     fn fly(&mut self) {
@@ -177,7 +204,7 @@ where
             let begun =
                 Flight::start(scenario, Cartesian(scenario.case().forces()), self.interrupt).and_then(|mut flight| {
                     let observer = (self.observer)(&flight)?;
-                    Ok((flight.begin()?, Flying { index, flight, observer }))
+                    Ok((flight.begin()?, Box::new(Flying { index, flight, observer })))
                 });
             match begun {
                 Ok((None, flying)) => {
@@ -189,14 +216,15 @@ where
                     self.wait(free);
                     count += 1;
                 }
-                Ok((Some(arrival), flying)) => self.end(flying, arrival),
+                Ok((Some(arrival), flying)) => self.end(*flying, arrival),
                 Err(error) => self.outcomes.known[index] = Some(Err(error)),
             }
         }
     }
 
     /// Keeps what is wanted of a flight that has ended.
-    fn end(&mut self, Flying { index, flight, observer }: Flying<'_, O, N>, arrival: Arrival) {
+    fn end(&mut self, flying: Flying<'_, O, N>, arrival: Arrival) {
+        let Flying { index, flight, observer } = flying;
         self.outcomes.known[index] = Some(observer.finish(flight, arrival));
     }
 
@@ -206,7 +234,7 @@ where
             Ok(None) => return true,
             Ok(Some(arrival)) => {
                 if let Some(flying) = self.under_way[place].take() {
-                    self.end(flying, arrival);
+                    self.end(*flying, arrival);
                 }
             }
             Err(error) => {
@@ -221,11 +249,12 @@ where
     /// Flies the flight at a place alone until its forces change, and then lets it wait among its like.
     fn fly_alone(&mut self, place: usize) {
         let before = self.under_way[place].as_ref().map(|flying| flying.flight.phase_and_mode());
-        while let Some(Flying { flight, observer, .. }) = &mut self.under_way[place] {
+        while let Some(flying) = &mut self.under_way[place] {
+            let Flying { flight, observer, .. } = &mut **flying;
             if Some(flight.phase_and_mode()) != before {
                 break;
             }
-            let passed = flight.advance().and_then(|step| flight.pass(&step, &mut |view| observer.observe(view)));
+            let passed = flight.advance().and_then(|step| flight.pass(&step, None, &mut |view| observer.observe(view)));
             self.goes_on(place, passed);
         }
         self.wait(place);
@@ -233,15 +262,16 @@ where
 
     /// Lets a flight wait among its like; while it is stiff, it is flown alone.
     fn wait(&mut self, place: usize) {
-        while let Some(Flying { flight, observer, .. }) = &mut self.under_way[place] {
+        while let Some(flying) = &mut self.under_way[place] {
+            let Flying { flight, observer, .. } = &mut **flying;
             if !flight.integrator.is_stiff() {
                 break;
             }
-            let passed = flight.advance().and_then(|step| flight.pass(&step, &mut |view| observer.observe(view)));
+            let passed = flight.advance().and_then(|step| flight.pass(&step, None, &mut |view| observer.observe(view)));
             self.goes_on(place, passed);
         }
-        let Some(Flying { flight, .. }) = &self.under_way[place] else { return };
-        match self.group_like(flight.motion.forces()) {
+        let Some(flying) = &self.under_way[place] else { return };
+        match self.group_like(flying.flight.motion.forces()) {
             Some(group) => self.groups[group].push(place),
             None => self.groups.push(vec![place]),
         }
@@ -249,7 +279,7 @@ where
 
     /// The group of the flights whose forces are like these.
     fn group_like(&self, forces: &Forces) -> Option<usize> {
-        let first = |group: &Vec<usize>| group.first().and_then(|place| self.under_way[*place].as_ref());
+        let first = |group: &Vec<usize>| group.first().and_then(|place| self.under_way[*place].as_deref());
         let is_alike = |first: &Flying<O, N>| first.flight.motion.forces().are_alike(forces);
         self.groups.iter().position(|group| first(group).is_some_and(is_alike))
     }
@@ -288,8 +318,9 @@ where
             }
             for (lane, place) in lanes.iter_mut().enumerate() {
                 if let Some(at) = *place
-                    && let Some(Flying { flight, .. }) = &mut self.under_way[at]
+                    && let Some(flying) = &mut self.under_way[at]
                 {
+                    let flight = &mut flying.flight;
                     let end = flight.horizon();
                     if let Err(error) = self.steps.load(lane, &mut flight.integrator, &flight.motion, end) {
                         let error = flight.failure(error);
@@ -302,14 +333,29 @@ where
                 continue;
             }
             self.steps.attempt(&system);
+            let flying = lanes.iter().flatten().filter_map(|place| self.under_way[*place].as_ref());
+            let with_loads = flying.map(|flying| flying.takes_loads()).any(|takes| takes);
+            let (time, numbers) = self.steps.ends();
+            let state = <Cartesian as Formulation<N>>::state(&numbers);
+            let readings = self.steps.run(ReadingsOf { forces: &system.0, time, state, with_loads });
             for (lane, place) in lanes.iter_mut().enumerate() {
                 let Some(at) = *place else { continue };
-                let Some(Flying { flight, observer, .. }) = &mut self.under_way[at] else { continue };
-                let Some(step) = self.steps.judge(lane, &mut flight.integrator, &flight.motion) else { continue };
-                let before = flight.phase_and_mode();
-                let passed = flight.pass(&step, &mut |view| observer.observe(view));
+                let Some(Flying { flight, observer, .. }) = self.under_way[at].as_deref_mut() else { continue };
+                if !self.steps.judge(lane, &mut flight.integrator, &flight.motion) {
+                    continue;
+                }
+                let read = readings.of_lane(lane);
+                if flight.pass_quietly(&read, observer) {
+                    if flight.integrator.is_stiff() {
+                        *place = None;
+                        self.wait(at);
+                    }
+                    continue;
+                }
+                let (step, before) = (self.steps.step(lane), flight.phase_and_mode());
+                let passed = flight.pass(&step, Some(&read), &mut |view| observer.observe(view));
                 let goes_on = self.goes_on(at, passed);
-                let Some(Flying { flight, .. }) = self.under_way[at].as_ref().filter(|_| goes_on) else {
+                let Some(Flying { flight, .. }) = self.under_way[at].as_deref().filter(|_| goes_on) else {
                     *place = None;
                     continue;
                 };

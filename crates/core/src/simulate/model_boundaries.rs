@@ -15,10 +15,13 @@ use crate::scalar::Scalar;
 #[derive(Clone, Copy)]
 pub(super) struct ModelBoundaryDetector {
     /// The quantities on which formulas depend, with their rates, at the end of the last step; zero where there is none.
-    readings: [Dual64; Switch::ALL.len()],
+    readings: Readings,
     /// The same at its start, with its length, s.
-    before: Option<(f64, [Dual64; Switch::ALL.len()])>,
+    before: Option<(f64, Readings)>,
 }
+
+/// The quantity of every switch, with its rate.
+type Readings = [Dual64; Switch::ALL.len()];
 
 /// Where a flight leaves a segment.
 #[derive(Clone, Copy)]
@@ -67,6 +70,22 @@ impl ModelBoundaryDetector {
         Self { readings: read(forces, start), before: None }
     }
 
+    /// Whether nothing happens in a step with such readings at its end, nor is expected in the next one; their lengths, s.
+    pub(super) fn is_quiet(&self, forces: &Forces, ends: &Readings, [length, next]: [f64; 2]) -> bool {
+        forces.switches().iter().all(|switch| {
+            boundaries_around(forces, switch).into_iter().flatten().all(|boundary| {
+                let [start, end] = [&self.readings, ends].map(|readings| boundary.inside(readings[switch as usize]));
+                !event::seems_to_fall(start, end, length) && !event::may_fall_within(end, next)
+            })
+        })
+    }
+
+    /// Goes on to the end of a step of a length, s, by the readings there.
+    pub(super) fn go_on(&mut self, ends: &Readings, length: f64) {
+        self.before = Some((length, self.readings));
+        self.readings = *ends;
+    }
+
     /// Those after a change that leaves their rates as they were before.
     pub(super) fn going_on(self, before: &Self) -> Self {
         Self { before: before.before, ..self }
@@ -107,7 +126,7 @@ impl Detector for ModelBoundaryDetector {
     fn predict(&self, forces: &Forces, within: f64) -> Option<PredictedCrossing> {
         let around = forces.switches().iter().flat_map(|switch| {
             boundaries_around(forces, switch).into_iter().flatten().filter_map(move |boundary| {
-                let of = |readings: &[Dual64; Switch::ALL.len()]| boundary.inside(readings[switch as usize]);
+                let of = |readings: &Readings| boundary.inside(readings[switch as usize]);
                 let before = self.before.as_ref().map(|(length, readings)| (*length, of(readings)));
                 event::predicted_fall(of(&self.readings), before, within)
             })
@@ -117,8 +136,7 @@ impl Detector for ModelBoundaryDetector {
 
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
         if step.motion.forces().has_switches() {
-            self.before = Some((step.length(), self.readings));
-            self.readings = *step.readings_at_end();
+            self.go_on(step.readings_at_end(), step.length());
         }
     }
 }
@@ -146,7 +164,7 @@ fn boundaries_around(forces: &Forces, switch: Switch) -> [Option<Boundary>; 2] {
 }
 
 /// The quantity of every switch.
-fn read(forces: &Forces, now: &StateRate) -> [Dual64; Switch::ALL.len()] {
+fn read(forces: &Forces, now: &StateRate) -> Readings {
     forces.readings(now.time, &now.state)
 }
 

@@ -2,8 +2,8 @@
 
 use num_dual::Dual64;
 
-use super::SimulationError;
 use super::step_view::StepView;
+use super::{QuietStep, SimulationError};
 use crate::heating::HeatFlux;
 use crate::integrate::{Integrator, event};
 use crate::motion::{Forces, Formulation, LIFT_FADE_ANGLE, Loads, ModelMode, StateRate};
@@ -82,7 +82,7 @@ impl PeakTracker {
         if let Some(before) = self.cone
             && !self.faded
         {
-            let after = outside_cone(forces, &end);
+            let after = outside(view.cos_squared_gamma_at_end());
             self.cone = Some(after);
             let inside = |part| outside_cone(forces, &view.inside(part));
             if let Some(part) = event::first_fall(before, after, view.step.length(), &inside) {
@@ -91,6 +91,33 @@ impl PeakTracker {
             }
         }
         Ok(())
+    }
+
+    /// Notes the peaks of a step, if its ends tell all of them and there is nothing to warn of.
+    pub(super) fn observe_quietly(&mut self, step: &QuietStep) -> bool {
+        let QuietStep { forces, phase, start_time, end_time, read } = *step;
+        let length = end_time - start_time;
+        let Some((loads, cos_squared_gamma)) = read.loads else { return false };
+        if (phase, forces.mode()) != self.phase_and_mode
+            || finite(loads, end_time).is_err()
+            || turns(&self.loads, &loads)
+            || self.may_turn_and_rise(forces, &self.loads, &loads, length)
+        {
+            return false;
+        }
+        if let Some(before) = self.cone
+            && !self.faded
+        {
+            let after = outside(cos_squared_gamma);
+            if !event::stays_above(before, after, length) {
+                return false;
+            }
+            self.cone = Some(after);
+        }
+        let start = std::mem::replace(&mut self.loads, loads);
+        let time = |part| if part < 1.0 { start_time } else { end_time };
+        raise_all(&mut self.peaks, &[(0.0, start), (1.0, loads)], |_| loads, time);
+        true
     }
 
     /// Goes to the loads at a moment at which they may have jumped.
@@ -215,6 +242,22 @@ fn raise_all(
     }
 }
 
+/// Whether the rates at the ends of a step tell of a maximum of one of the quantities inside.
+fn turns(start: &Loads<Dual64>, end: &Loads<Dual64>) -> bool {
+    let of_flow: [fn(&Loads<Dual64>) -> Dual64; 9] = [
+        |loads| loads.deceleration,
+        |loads| loads.load_factor,
+        |loads| loads.dynamic_pressure,
+        |loads| loads.altitude,
+        |loads| loads.speed,
+        mach_of,
+        |loads| heat_flux_of(loads).convective,
+        |loads| heat_flux_of(loads).radiative,
+        |loads| heat_flux_of(loads).total(),
+    ];
+    of_flow.into_iter().any(|quantity| event::rises(quantity(start), quantity(end)))
+}
+
 fn mach_of(loads: &Loads<Dual64>) -> Dual64 {
     loads.mach.unwrap_or(Dual64::from(0.0))
 }
@@ -267,5 +310,9 @@ fn loads_at(forces: &Forces, moment: &StateRate) -> Loads<Dual64> {
 
 /// Positive outside the cone about the vertical in which lift fades: cos²γ - ε².
 fn outside_cone(forces: &Forces, moment: &StateRate) -> Dual64 {
-    forces.cos_squared_angle_to_air(&moment.state) - LIFT_FADE_ANGLE * LIFT_FADE_ANGLE
+    outside(forces.cos_squared_angle_to_air(&moment.state))
+}
+
+fn outside(cos_squared_gamma: Dual64) -> Dual64 {
+    cos_squared_gamma - LIFT_FADE_ANGLE * LIFT_FADE_ANGLE
 }

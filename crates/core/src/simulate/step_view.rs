@@ -9,7 +9,7 @@ use num_dual::Dual64;
 use crate::coordinates::GreatCircle;
 use crate::event::Quantity;
 use crate::integrate::{Interpolant, Step};
-use crate::motion::{Flow, Formulation, Loads, State, StateRate, Switch};
+use crate::motion::{EndReadings, Flow, Formulation, Loads, State, StateRate, Switch};
 
 /// An accepted step.
 pub(super) struct StepView<'a, F, const N: usize> {
@@ -19,7 +19,9 @@ pub(super) struct StepView<'a, F, const N: usize> {
     /// The number of the phase to which it belongs.
     pub(super) phase: usize,
     interpolant: OnceCell<Interpolant<N>>,
+    altitude_at_end: OnceCell<Dual64>,
     flow_at_end: OnceCell<Flow<Dual64>>,
+    cos_squared_gamma_at_end: OnceCell<Dual64>,
     loads_at_end: OnceCell<Loads<Dual64>>,
     quantities_at_end: [OnceCell<Dual64>; Quantity::ALL.len()],
     readings_at_end: OnceCell<[Dual64; Switch::ALL.len()]>,
@@ -36,10 +38,24 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
             motion,
             phase,
             interpolant: OnceCell::new(),
+            altitude_at_end: OnceCell::new(),
             flow_at_end: OnceCell::new(),
+            cos_squared_gamma_at_end: OnceCell::new(),
             loads_at_end: OnceCell::new(),
             quantities_at_end: Default::default(),
             readings_at_end: OnceCell::new(),
+        }
+    }
+
+    /// Notes what was read at the end already.
+    pub(super) fn note(&mut self, read: &EndReadings) {
+        self.altitude_at_end = OnceCell::from(read.altitude);
+        if let Some(switches) = read.switches {
+            self.readings_at_end = OnceCell::from(switches);
+        }
+        if let Some((loads, cos_squared_gamma)) = read.loads {
+            self.loads_at_end = OnceCell::from(loads);
+            self.cos_squared_gamma_at_end = OnceCell::from(cos_squared_gamma);
         }
     }
 
@@ -99,13 +115,31 @@ impl<'a, F: Formulation<N>, const N: usize> StepView<'a, F, N> {
         StateRate::of::<F, N>(self.step.end_time, &self.step.end, &self.step.end_derivative)
     }
 
+    /// The altitude at the end, m.
+    pub(super) fn altitude_at_end(&self) -> Dual64 {
+        let read = || self.motion.forces().planet().shape.altitude(&self.end().state.position);
+        *self.altitude_at_end.get_or_init(read)
+    }
+
+    /// The air that meets the vehicle at the end, with its Mach number.
+    fn flow_at_end(&self) -> &Flow<Dual64> {
+        self.flow_at_end.get_or_init(|| {
+            let StateRate { time, state, .. } = self.end();
+            self.motion.forces().flow_with_mach(time, &state)
+        })
+    }
+
     /// The loads at the end.
     pub(super) fn loads_at_end(&self) -> &Loads<Dual64> {
         self.loads_at_end.get_or_init(|| {
             let StateRate { time, state, .. } = self.end();
-            let forces = self.motion.forces();
-            forces.loads_in(time, &state, self.flow_at_end.get_or_init(|| forces.flow_with_mach(time, &state)))
+            self.motion.forces().loads_in(time, &state, self.flow_at_end())
         })
+    }
+
+    /// cos²γ of the velocity relative to the air at the end.
+    pub(super) fn cos_squared_gamma_at_end(&self) -> Dual64 {
+        *self.cos_squared_gamma_at_end.get_or_init(|| self.flow_at_end().cos_squared_gamma())
     }
 
     /// What an event may wait for, at the end; ranges from the beginning of `track`.

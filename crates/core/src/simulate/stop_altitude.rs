@@ -45,6 +45,18 @@ impl StopAltitudeDetector {
         self.before = None;
     }
 
+    /// Whether nothing happens in a step with an altitude at its end, m, nor is expected in the next one; their lengths, s.
+    pub(super) fn is_quiet(&self, altitude: Dual64, [length, next]: [f64; 2]) -> bool {
+        let height = altitude - self.stop_altitude;
+        event::stays_above(self.height, height, length) && !event::may_fall_within(height, next)
+    }
+
+    /// Goes on to the end of a step of a length, s, by the altitude there, m.
+    pub(super) fn go_on(&mut self, altitude: Dual64, length: f64) {
+        self.before = Some((length, self.height));
+        self.height = altitude - self.stop_altitude;
+    }
+
     /// The height above the stop altitude, m, with its rate.
     pub(super) fn height_at(&self, now: &StateRate) -> Dual64 {
         self.height_of(&now.state.position)
@@ -76,7 +88,7 @@ impl Detector for StopAltitudeDetector {
 
     /// The first crossing downwards, a dip inside the step included.
     fn locate<F: Formulation<N>, const N: usize>(&self, step: &StepView<F, N>) -> Option<(f64, ())> {
-        let end = self.height_at(&step.end());
+        let end = step.altitude_at_end() - self.stop_altitude;
         let part = event::first_fall(self.height, end, step.length(), &HeightInside { detector: self, step })?;
         Some((part, ()))
     }
@@ -90,8 +102,6 @@ impl Detector for StopAltitudeDetector {
     }
 
     fn follow<F: Formulation<N>, const N: usize>(&mut self, step: &StepView<F, N>) {
-        let before = (step.length(), self.height);
-        self.go_to(&step.end());
-        self.before = Some(before);
+        self.go_on(step.altitude_at_end(), step.length());
     }
 }
