@@ -1,7 +1,6 @@
 //! `cargo bench --bench flights`: what a flight costs, in counts and in time, beside the DOP853 of `ode_solvers` with the same
 //! derivative; what the models cost that the thesis does not have, and how many steps their changes of formula reject; what heating and
-//! events cost; and what lanes,
-//! sensitivities and verification cost in plain flights.
+//! events cost; what sensitivities and verification cost in plain flights; and what lanes and a second thread save.
 //!
 //! Machines are noisy: in every comparison the contenders take turns, and a time is the median of many rounds. Counts are exact.
 
@@ -17,10 +16,10 @@ use reentry::atmosphere::us76;
 use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System, lane_instructions};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
-use reentry::simulate::{arrival, arrivals, simulate_with_bodies};
+use reentry::simulate::{arrival, arrivals, extremes, extremes_of_all, simulate_with_bodies};
 use reentry::trajectory::Sampling;
 use reentry::verification::verify;
-use reentry::{Case, FlightPath, PlanetFixed, Scenario, Solver, Stop, simulate};
+use reentry::{Case, PlanetFixed, Scenario, Solver, Stop, simulate};
 use reentry_service::answer::{self, Answer};
 use reentry_service::format::Format;
 use reentry_service::wire::json;
@@ -43,6 +42,7 @@ fn main() {
     heating_and_events();
     ascents();
     number_types();
+    lanes();
     searches();
 }
 
@@ -411,34 +411,106 @@ fn event(quantity: &str, way: &str, value: f64) -> Value {
     json!({"when": {"quantity": quantity, (way): value}})
 }
 
-/// TARGET reference case 2: lanes by the flight, derivatives and verification in plain flights.
+/// TARGET reference case 2: derivatives and verification in plain flights.
 fn number_types() {
-    let case = scenario("target_2").case().clone();
-    let flight = simulate(&Scenario::new(case.clone()).unwrap(), &NEVER).unwrap();
-    let nominal = FlightPath::from_planet_fixed(&case.initial_state);
-    // Dispersed by up to 1 per cent, evenly.
-    let member = |index: u32| {
-        let part = f64::from(index) / 256.0 * 0.02 + 0.99;
-        let state = FlightPath { speed: nominal.speed * part, ..nominal };
-        Scenario::new(Case { initial_state: state.to_planet_fixed(), ..case.clone() }).unwrap()
-    };
-    let members: Vec<_> = (0..256).map(member).collect();
-    let scenario = Scenario::new(case.clone()).unwrap();
-    let [alone, in_lanes, plain, derivatives, verification] = micros([
-        &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
-        &mut timed(|| arrivals(&members, &NEVER)),
+    let scenario = scenario("target_2");
+    let flight = simulate(&scenario, &NEVER).unwrap();
+    let [plain, derivatives, verification] = micros([
         &mut timed(|| simulate(&scenario, &NEVER)),
         &mut timed(|| sensitivities(&flight, &NEVER)),
         &mut timed(|| verify(&scenario, &flight, &NEVER)),
     ]);
     println!("\n| TARGET reference case 2 | time | over a plain flight |");
     println!("| --- | --- | --- |");
-    let line = |what: &str, time: f64, plain: f64| println!("| {what} | {time:.1} µs | {:.2} |", time / plain);
-    line("an arrival, one of 256 dispersed ones", alone / 256.0, alone / 256.0);
-    line(&format!("in lanes ({})", lane_instructions().unwrap_or("none")), in_lanes / 256.0, alone / 256.0);
-    line("a flight with its peaks", plain, plain);
-    line("its sensitivities, 5 by 12", derivatives, plain);
-    line("its verification", verification, plain);
+    let line = |what: &str, time: f64| println!("| {what} | {time:.1} µs | {:.2} |", time / plain);
+    line("a flight with its peaks", plain);
+    line("its sensitivities, 5 by 12", derivatives);
+    line("its verification", verification);
+}
+
+/// Flights that differ in speed, mass and density alone: one by one and in lanes, their ends, and their peaks as well; then in two threads.
+fn lanes() {
+    let with_tolerance = |case: Case, relative_tolerance: f64| {
+        let solver = Solver { relative_tolerance, ..case.solver };
+        Case { solver, ..case }
+    };
+    let target_2 = scenario("target_2").case().clone();
+    let heated = json!({
+        "atmosphere": {"type": "us76"}, "heating": {"convective": "sutton_graves"},
+        "vehicle": {"mass": 5500, "reference_area": 12, "nose_radius": 4.7,
+            "aerodynamics": {"type": "constant", "lift_coefficient": 0.4, "drag_coefficient": 1.4}},
+        "initial_state": {"type": "geodetic", "geodetic_altitude": 120e3, "longitude": 0.9, "geodetic_latitude": 0.66,
+            "speed": 7600, "flight_path_angle": -0.028, "azimuth": 1.05},
+        "events": [event("altitude", "falls_through", 100e3), event("altitude", "falls_through", 50e3),
+            event("speed", "falls_through", 3000.0), event("mach", "falls_through", 2.0),
+            event("dynamic_pressure", "rises_through", 2000.0)],
+    });
+    let mut steered: Value = serde_json::from_str(include_str!("../../openapi/examples/lifting_capsule.json")).unwrap();
+    steered.as_object_mut().unwrap().retain(|name, _| !["events", "output", "sensitivities"].contains(&name.as_str()));
+    let mut cases = vec![
+        ("TARGET reference case 2, at 1e-8".to_owned(), with_tolerance(target_2.clone(), 1e-8)),
+        ("TARGET reference case 2, at 1e-10".to_owned(), with_tolerance(target_2.clone(), 1e-10)),
+        ("a capsule in us76, heated, five events".to_owned(), job(&heated).scenario.case().clone()),
+        ("a capsule with tables and schedules".to_owned(), job(&steered).scenario.case().clone()),
+    ];
+    cases.extend(models().into_iter().map(|(name, case)| (format!("a glide: {name}"), case)));
+    println!("\n| flights in lanes ({}) | ends alone | in lanes | | with peaks | in lanes | |", instructions());
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for (name, case) in cases {
+        let members = dispersed(&case);
+        let each = |seconds: f64| seconds * 1e6 / f64::from(MEMBERS);
+        let [alone, in_lanes, peaks, peaks_in_lanes] = medians(
+            ROUNDS_OF_MANY,
+            [
+                &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
+                &mut timed(|| arrivals(&members, &NEVER)),
+                &mut timed(|| members.iter().map(|member| extremes(member, &NEVER)).collect::<Vec<_>>()),
+                &mut timed(|| extremes_of_all(&members, &NEVER)),
+            ],
+        )
+        .map(each);
+        println!(
+            "| {name} | {alone:.1} µs | {in_lanes:.1} µs | {:.2} | {peaks:.1} µs | {peaks_in_lanes:.1} µs | {:.2} |",
+            alone / in_lanes,
+            peaks / peaks_in_lanes
+        );
+    }
+    let members = dispersed(&target_2);
+    let (first, second) = members.split_at(members.len() / 2);
+    let [one, two] = medians(
+        ROUNDS_OF_MANY,
+        [
+            &mut timed(|| [arrivals(first, &NEVER), arrivals(second, &NEVER)]),
+            &mut timed(|| {
+                std::thread::scope(|scope| {
+                    let other = scope.spawn(|| arrivals(second, &NEVER));
+                    [arrivals(first, &NEVER), other.join().unwrap()]
+                })
+            }),
+        ],
+    );
+    println!("\nTwo threads are {:.2} times as fast as one.", one / two);
+}
+
+fn instructions() -> &'static str {
+    lane_instructions().unwrap_or("none")
+}
+
+/// Flights that begin at once.
+const MEMBERS: u32 = 256;
+const ROUNDS_OF_MANY: usize = 30;
+
+/// A case and others beside it, of other speeds, masses and densities.
+fn dispersed(case: &Case) -> Vec<Scenario> {
+    let member = |index: u32| {
+        let part = |number: u32| f64::from((index * (2 * number + 7) * 37) % 101) / 101.0 - 0.5;
+        let mut moved = case.clone();
+        moved.initial_state.velocity *= 1.0 + 2e-3 * part(1);
+        moved.vehicle.mass *= 1.0 + 0.1 * part(2);
+        moved.density_factor *= 1.0 + 0.2 * part(3);
+        Scenario::new(moved).unwrap()
+    };
+    (0..MEMBERS).map(member).collect()
 }
 
 /// What the searches of the document's examples take.

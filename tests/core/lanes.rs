@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
+use reentry::integrate::{LaneInstructions, lane_instructions, use_lanes};
 use reentry::simulate::{arrival, arrivals, ends, ends_of_all, extremes, extremes_of_all};
 use reentry::{Case, Scenario, Solver};
 use reentry_service::wire::json;
@@ -50,6 +51,25 @@ fn families_of_the_examples_fly_in_lanes_as_they_do_alone() {
     let examples: Vec<_> = Mutator::new("/simulate", "simulate").requests.iter().filter_map(case_of).collect();
     assert!(examples.len() > 12, "{} examples", examples.len());
     agree((0..9).flat_map(|member| examples.iter().map(move |case| moved(case, member))).collect());
+}
+
+/// By each instruction set that the processor has, not by the widest alone; without any, flights fly alone.
+#[test]
+fn flights_have_the_same_digits_by_all_instructions() {
+    let examples: Vec<_> = Mutator::new("/simulate", "simulate").requests.iter().filter_map(case_of).collect();
+    let scenarios: Vec<_> = (0..9)
+        .flat_map(|member| examples.iter().filter_map(move |case| Scenario::new(moved(case, member)).ok()))
+        .collect();
+    let mut names = Vec::new();
+    let mut flown = Vec::new();
+    for instructions in [LaneInstructions::Widest, LaneInstructions::Avx2, LaneInstructions::None] {
+        use_lanes(instructions);
+        names.push(lane_instructions());
+        flown.push(format!("{:?}", extremes_of_all(&scenarios, &NEVER)));
+    }
+    use_lanes(LaneInstructions::Widest);
+    assert_eq!(names[1..], [names[0].map(|_| "avx2"), None]);
+    assert!(flown[0] == flown[1] && flown[1] == flown[2], "{names:?}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ mod step;
 mod step_control;
 mod tableau;
 
-pub use lanes::{LaneBounds, LaneJob, LaneSteps, lane_instructions, use_lanes};
+pub use lanes::{LaneBounds, LaneInstructions, LaneJob, LaneSteps, lane_instructions, use_lanes};
 pub use radau::follow_implicitly;
 pub use step::{Interpolant, Step, follow};
 
@@ -217,7 +217,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 let trial = step::attempt(system, control.time, state, derivative, control.length);
                 let error = control.error(state, &trial.outcome);
                 if self.accepts(system, error) {
-                    return Ok(self.take(system, TrialEnd::of(system, trial_end, &trial)));
+                    return Ok(self.take(system, &TrialEnd::of(system, trial_end, &trial)));
                 }
             }
         }
@@ -261,7 +261,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
         let trial = step::attempt(system, self.control.time, &self.state, &self.derivative, length);
         self.control.statistics.evaluations += step::TRIAL_EVALUATIONS + 1;
-        self.take(system, TrialEnd::of(system, end, &trial))
+        self.take(system, &TrialEnd::of(system, end, &trial))
     }
 
     /// Ends the step that was taken last inside it, at a part of it, as its interpolant has the state there: which costs one evaluation. None
@@ -318,8 +318,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Goes to the end of an explicit trial step.
     #[inline]
-    fn take<F: StepBounds<N>>(&mut self, system: &F, trial: TrialEnd<N>) -> Step<N> {
-        let TrialEnd { time, state, derivative, slopes, longest_step } = trial;
+    fn take<F: StepBounds<N>>(&mut self, system: &F, trial: &TrialEnd<N>) -> Step<N> {
+        let TrialEnd { time, state, derivative, slopes, longest_step } = *trial;
         let step = Step {
             start_time: self.control.time,
             end_time: time,

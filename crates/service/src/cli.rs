@@ -16,7 +16,7 @@ use std::{env, fs};
 use clap::error::ContextValue;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use reentry::integrate::{lane_instructions, use_lanes};
+use reentry::integrate::{LaneInstructions, lane_instructions, use_lanes};
 
 use crate::answer;
 use crate::cli::cases::{Cases, States};
@@ -298,7 +298,9 @@ impl Cli {
     /// # Errors
     /// With what is to be said, unless it has been, and the code with which to end.
     pub fn run(self, serve: impl FnOnce(Config) -> Result<(), Failure>) -> Result<(), Failure> {
-        use_lanes(self.lanes);
+        if !self.lanes {
+            use_lanes(LaneInstructions::None);
+        }
         if let Some(path) = &self.space_weather {
             use_space_weather(path)?;
         }

@@ -1,6 +1,6 @@
 //! Trial steps of several integrators at once, in the vector registers of the processor.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::step::Inside;
 use super::step_control::{Tolerances, TrialError};
@@ -150,12 +150,24 @@ impl<M: LaneBounds<N, L>, const N: usize, const L: usize> LaneJob for Attempt<'_
     }
 }
 
-/// Whether there are to be no lanes.
-static ARE_OFF: AtomicBool = AtomicBool::new(false);
+/// By which instructions lanes may be computed. The digits are the same by all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum LaneInstructions {
+    /// The widest that the processor has.
+    Widest,
+    /// None wider than AVX2.
+    Avx2,
+    /// None: flights are flown one by one.
+    None,
+}
 
-/// Turns lanes on or off for the whole program. Without them flights are flown one by one, to the same digits.
-pub fn use_lanes(are_on: bool) {
-    ARE_OFF.store(!are_on, Ordering::Relaxed);
+/// The [`LaneInstructions`] of the program.
+static ALLOWED: AtomicU8 = AtomicU8::new(LaneInstructions::Widest as u8);
+
+/// Decides for the whole program by which instructions lanes are computed from now on.
+pub fn use_lanes(allowed: LaneInstructions) {
+    ALLOWED.store(allowed as u8, Ordering::Relaxed);
 }
 
 /// The instructions by which lanes are computed; none where there are no [`LaneSteps`].
@@ -164,7 +176,14 @@ pub fn lane_instructions() -> Option<&'static str> {
 }
 
 fn widest() -> Option<isa::InstructionSet> {
-    if ARE_OFF.load(Ordering::Relaxed) { None } else { isa::widest() }
+    let allowed = ALLOWED.load(Ordering::Relaxed);
+    if allowed == LaneInstructions::None as u8 {
+        None
+    } else if allowed == LaneInstructions::Avx2 as u8 {
+        isa::avx2()
+    } else {
+        isa::widest()
+    }
 }
 
 /// The instruction sets among which the processor decides when the program runs.
@@ -187,16 +206,19 @@ mod isa {
             && is_x86_feature_detected!("avx512bw")
         {
             Some(InstructionSet::Avx512)
-        } else if is_x86_feature_detected!("avx2") {
-            Some(InstructionSet::Avx2)
         } else {
-            None
+            avx2()
         }
     });
 
-    /// The widest that the processor has. There is no other way to come by one.
+    /// The widest that the processor has. Of this and the next one alone there are instruction sets.
     pub(super) fn widest() -> Option<InstructionSet> {
         *WIDEST
+    }
+
+    /// AVX2, if the processor has it.
+    pub(super) fn avx2() -> Option<InstructionSet> {
+        is_x86_feature_detected!("avx2").then_some(InstructionSet::Avx2)
     }
 
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
@@ -240,6 +262,10 @@ mod isa {
     pub(super) enum InstructionSet {}
 
     pub(super) fn widest() -> Option<InstructionSet> {
+        None
+    }
+
+    pub(super) fn avx2() -> Option<InstructionSet> {
         None
     }
 

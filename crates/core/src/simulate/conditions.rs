@@ -316,15 +316,15 @@ impl ConditionDetector {
         let mut waiting = self.armed().filter(|(_, pending)| pending.condition.quantity != Quantity::Time);
         waiting.all(|(_, pending)| {
             let [start, end] = [&self.last, ends].map(|readings| pending.before_among(readings));
-            !event::may_cross(start, end, length, forces.has_tables())
-                && !(pending.changes_flight && event::may_fall_within(end, next))
+            let is_expected = pending.changes_flight && event::may_fall_within(end, next);
+            !is_expected && !event::may_cross(start, end, length, forces.has_tables())
         })
     }
 
     /// Goes on to the end of a step of a length, s, by the readings there. Conditions that are met there, or in a step that is cut there are on their
     /// values to rounding, are due.
-    pub(super) fn go_on(&mut self, ends: Readings, length: f64, is_cut: bool) {
-        self.before = std::mem::replace(&mut self.last, ends);
+    pub(super) fn go_on(&mut self, ends: &Readings, length: f64, is_cut: bool) {
+        self.before = std::mem::replace(&mut self.last, *ends);
         self.length_before = Some(length);
         let Self { all, before, last, .. } = self;
         for pending in all.iter_mut().filter(|pending| pending.status == Status::Armed) {
@@ -440,7 +440,7 @@ impl Detector for ConditionDetector {
         for watched in &self.watched {
             ends[*watched as usize] = self.at_end(*watched, step);
         }
-        self.go_on(ends, step.length(), step.is_cut());
+        self.go_on(&ends, step.length(), step.is_cut());
     }
 }
 

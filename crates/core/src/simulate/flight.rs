@@ -244,7 +244,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         if let Some(ends) = &read.switches {
             model_boundaries.go_on(ends, length);
         }
-        if let Some(ends) = conditions_read {
+        if let Some(ends) = &conditions_read {
             conditions.go_on(ends, length, false);
         }
         (self.time, self.state) = (time, *state);

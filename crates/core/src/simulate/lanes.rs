@@ -333,8 +333,8 @@ where
                 continue;
             }
             self.steps.attempt(&system);
-            let flying = lanes.iter().flatten().filter_map(|place| self.under_way[*place].as_ref());
-            let with_loads = flying.map(|flying| flying.takes_loads()).any(|takes| takes);
+            let mut flying = lanes.iter().flatten().filter_map(|place| self.under_way[*place].as_ref());
+            let with_loads = flying.any(|flying| flying.takes_loads());
             let (time, numbers) = self.steps.ends();
             let state = <Cartesian as Formulation<N>>::state(&numbers);
             let readings = self.steps.run(ReadingsOf { forces: &system.0, time, state, with_loads });
