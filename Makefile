@@ -15,7 +15,7 @@ PAGE_SOURCES := $(shell find $(UI)/src $(UI)/build openapi/openapi.json openapi/
 	$(addprefix $(UI)/,index.html package.json tsconfig.json vite.config.ts)
 
 .DELETE_ON_ERROR:
-.PHONY: help run build ui test check openapi validation air theory bench load fuzz browser
+.PHONY: help run build ui test check openapi validation air theory bench load fuzz miri browser
 
 help: ## List the recipes
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 20
@@ -88,6 +88,11 @@ load: build ## Measure the service under load, beside one that computes without 
 	cargo build --quiet --release --locked --package reentry-tests --example load --example overload
 	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/load
 	REENTRY=$(TARGET)/release/reentry $(TARGET)/release/examples/overload
+
+# An interpreter of nightly Rust, which has to be told that its processor has AVX2.
+miri: ## Look for undefined behaviour where lanes choose their instructions; needs `rustup toolchain install nightly -c miri`
+	RUSTFLAGS=-Ctarget-feature=+avx2 cargo +nightly miri test --locked --package reentry-core --lib integrate::lanes \
+		--target-dir $(TARGET)/miri
 
 # What it finds interesting stays in $(TARGET); `tests/fuzz/corpus` is what it begins with.
 fuzz: $(FUZZ) ## Try inputs that a fuzzer makes up, for SECONDS=60 a target

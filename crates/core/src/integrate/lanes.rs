@@ -279,3 +279,73 @@ mod isa {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::{LaneBounds, LaneInstructions, LaneSteps, use_lanes};
+    use crate::integrate::{Integrator, Limits, StepBounds, System};
+    use crate::scalar::{Lanes, Scalar};
+
+    static NEVER: AtomicBool = AtomicBool::new(false);
+
+    /// A swing that time slows down.
+    struct Swing;
+
+    impl<S: Scalar> System<S, 2> for Swing {
+        #[inline(always)]
+        fn derivative(&self, time: S, [place, speed]: &[S; 2]) -> [S; 2] {
+            [*speed, -*place * (-time).exp()]
+        }
+    }
+
+    impl StepBounds<2> for Swing {
+        fn magnitudes(&self) -> [f64; 2] {
+            [1.0; 2]
+        }
+    }
+
+    impl LaneBounds<2, 8> for Swing {
+        fn longest_step(&self, _: Lanes<8>, _: &[Lanes<8>; 2]) -> Option<Lanes<8>> {
+            None
+        }
+    }
+
+    fn integrators() -> Vec<Integrator<'static, 2>> {
+        let limits = Limits { relative_tolerance: 1e-9, steps: 100, interrupt: &NEVER };
+        (0..8_u32).map(|lane| Integrator::new(&Swing, 0.0, [1.0, f64::from(lane)], limits)).collect()
+    }
+
+    /// Small enough for an interpreter that finds undefined behaviour, as where the processor did not have the instructions.
+    #[test]
+    fn lanes_take_the_steps_that_each_takes_alone() {
+        let mut alone = integrators();
+        for integrator in &mut alone {
+            while integrator.time() < 2.0 {
+                integrator.advance(&Swing, 2.0).unwrap_or_else(|error| panic!("{error}"));
+            }
+        }
+        for instructions in [LaneInstructions::Widest, LaneInstructions::Avx2] {
+            use_lanes(instructions);
+            let Some(mut steps) = LaneSteps::<2, 8>::new() else { continue };
+            let mut flying = integrators();
+            while flying.iter().any(|integrator| integrator.time() < 2.0) {
+                for (lane, integrator) in flying.iter_mut().enumerate().filter(|(_, one)| one.time() < 2.0) {
+                    steps.load(lane, integrator, &Swing, 2.0).unwrap_or_else(|error| panic!("{error}"));
+                }
+                steps.attempt(&Swing);
+                for (lane, integrator) in flying.iter_mut().enumerate().filter(|(_, one)| one.time() < 2.0) {
+                    if steps.judge(lane, integrator, &Swing) {
+                        assert_eq!(steps.step(lane).end, *integrator.state());
+                    }
+                }
+            }
+            let ends = |integrators: &[Integrator<2>]| -> Vec<_> {
+                integrators.iter().map(|one| (one.state().map(f64::to_bits), one.statistics())).collect()
+            };
+            assert_eq!(ends(&flying), ends(&alone));
+        }
+        use_lanes(LaneInstructions::Widest);
+    }
+}
