@@ -7,7 +7,7 @@ use num_dual::Dual64;
 use super::{Burn, Forces, Loads, LookupCache, Parameters, State, Switch};
 use crate::heating::HeatFlux;
 use crate::parachute::{Canopies, Filling};
-use crate::scalar::{DualLanes, Lanes};
+use crate::scalar::{DualLanes, Lanes, apart};
 
 /// What is read at the end of a step, with its rates.
 #[derive(Clone, Copy, Debug)]
@@ -144,13 +144,14 @@ impl<const L: usize> Forces<Lanes<L>> {
             let altitude = self.models.planet.shape.altitude(&state.position);
             return EndReadings { altitude, switches: None, loads: None };
         }
-        let flow = self.flow_with_mach(time, state);
-        let altitude = flow.arguments.altitude;
-        // Not closures, which would leave the instructions of lanes.
-        let loads = if with_loads { Some((self.loads_in(time, state, &flow), flow.cos_squared_gamma())) } else { None };
-        let switches =
-            if self.has_switches() { Some(self.readings_with(time, state, &OnceCell::from(flow))) } else { None };
-        EndReadings { altitude, switches, loads }
+        // In line, with all models and for each instruction set, it would double the time to compile the core.
+        apart(|| {
+            let flow = self.flow_with_mach(time, state);
+            let altitude = flow.arguments.altitude;
+            let loads = with_loads.then(|| (self.loads_in(time, state, &flow), flow.cos_squared_gamma()));
+            let switches = self.has_switches().then(|| self.readings_with(time, state, &OnceCell::from(flow)));
+            EndReadings { altitude, switches, loads }
+        })
     }
 
     /// Puts the numbers of forces that [are alike](Forces::are_alike) into a lane.

@@ -66,7 +66,6 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The same in the air that meets the vehicle, with its Mach number.
-    #[inline(always)]
     pub(crate) fn loads_in<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Loads<S> {
         let State { position, velocity, .. } = state;
         let Directions { radius, speed, up, ahead, .. } = &flow.directions;
@@ -115,7 +114,6 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The air that meets the vehicle in a state, with its Mach number where the atmosphere has a speed of sound.
-    #[inline(always)]
     pub(crate) fn flow_with_mach<S: Over<P>>(&self, time: S, state: &State<S>) -> Flow<S> {
         let mut flow = self.flow::<false, _>(time, state);
         if flow.arguments.mach.is_none() && self.models.atmosphere.has_speed_of_sound() {
@@ -132,7 +130,6 @@ impl<P: Scalar> Forces<P> {
     }
 
     /// The load factor of a vehicle without thrust.
-    #[inline(always)]
     fn aerodynamic_load_factor<S: Over<P>>(&self, time: S, flow: &Flow<S>, dynamic_pressure: S) -> S {
         // Accelerations by a unit of dynamic pressure: the squares of those of tiny forces would vanish.
         let (lift_coefficient, drag_coefficient) = self.lift_and_drag_coefficient(time, flow);
@@ -147,7 +144,6 @@ impl<P: Scalar> Forces<P> {
         dynamic_pressure * coefficient * (self.area_over_mass / STANDARD_GRAVITY)
     }
 
-    #[inline(always)]
     fn lift_and_drag_coefficient<S: Over<P>>(&self, time: S, flow: &Flow<S>) -> (S, S) {
         let Parameters { lift_coefficient, drag_coefficient, .. } = self.parameters;
         let Coefficients { lift, drag } =
