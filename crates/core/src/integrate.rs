@@ -333,7 +333,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         step
     }
 
-    /// Goes to the end of an explicit step: a time, s, and a state with its rate of change, in which a step of a length, s, may start.
+    /// Goes to the end of an explicit step: its time, s, its state, and the rate of change there. `longest_step`: that of the next one, s.
     #[inline]
     fn go_to<F: StepBounds<N>>(
         &mut self,

@@ -321,8 +321,8 @@ impl ConditionDetector {
         })
     }
 
-    /// Goes on to the end of a step of a length, s, by the readings there. Conditions that are met there, or in a step that is cut there are on their
-    /// values to rounding, are due.
+    /// Goes on to the end of a step of a length, s, by the readings there. Conditions that are met there are due; where the step is cut, those that are
+    /// on their values to rounding are too.
     pub(super) fn go_on(&mut self, ends: &Readings, length: f64, is_cut: bool) {
         self.before = std::mem::replace(&mut self.last, *ends);
         self.length_before = Some(length);
