@@ -16,7 +16,7 @@ use reentry::atmosphere::us76;
 use reentry::integrate::{Integrator, Limits, Statistics, StepBounds, System, lane_instructions};
 use reentry::motion::Cartesian;
 use reentry::sensitivity::sensitivities;
-use reentry::simulate::{arrival, arrivals, extremes, extremes_of_all, simulate_with_bodies};
+use reentry::simulate::{arrival, ends_of_all, extremes, extremes_of_all, simulate_with_bodies};
 use reentry::trajectory::Sampling;
 use reentry::verification::verify;
 use reentry::{Case, PlanetFixed, Scenario, Solver, Stop, simulate};
@@ -463,7 +463,7 @@ fn lanes() {
             ROUNDS_OF_MANY,
             [
                 &mut timed(|| members.iter().map(|member| arrival(member, &NEVER)).collect::<Vec<_>>()),
-                &mut timed(|| arrivals(&members, &NEVER)),
+                &mut timed(|| ends_of_all(&members, &NEVER)),
                 &mut timed(|| members.iter().map(|member| extremes(member, &NEVER)).collect::<Vec<_>>()),
                 &mut timed(|| extremes_of_all(&members, &NEVER)),
             ],
@@ -480,11 +480,11 @@ fn lanes() {
     let [one, two] = medians(
         ROUNDS_OF_MANY,
         [
-            &mut timed(|| [arrivals(first, &NEVER), arrivals(second, &NEVER)]),
+            &mut timed(|| [ends_of_all(first, &NEVER), ends_of_all(second, &NEVER)]),
             &mut timed(|| {
                 std::thread::scope(|scope| {
-                    let other = scope.spawn(|| arrivals(second, &NEVER));
-                    [arrivals(first, &NEVER), other.join().unwrap()]
+                    let other = scope.spawn(|| ends_of_all(second, &NEVER));
+                    [ends_of_all(first, &NEVER), other.join().unwrap()]
                 })
             }),
         ],

@@ -48,7 +48,7 @@ fn the_air_is_in_balance_with_gravity() {
                 let [below, above] =
                     [middle - 0.1 * height, middle + 0.1 * height].map(|altitude| air(&atmosphere, altitude));
                 let radius = planet.equatorial_radius() + middle;
-                let gravity = -planet.gravity(radius, &Vector3::x()).x - planet.rotation_rate.powi(2) * radius;
+                let gravity = -planet.gravity(radius.recip(), &Vector3::x()).x - planet.rotation_rate.powi(2) * radius;
                 let weight = air(&atmosphere, middle)[0] * gravity * 0.2 * height;
                 (below[1] - above[1]) / weight
             })

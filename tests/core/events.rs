@@ -7,7 +7,7 @@ use reentry::event::{Condition, Direction, Effect, Event, Quantity, Trigger};
 use reentry::heating::Heating;
 use reentry::propulsion::{Impulse, ThrustAxis};
 use reentry::scenario::{Fault, ScenarioError};
-use reentry::simulate::{arrival, arrivals};
+use reentry::simulate::{arrival, ends_of_all};
 use reentry::trajectory::{EventPoint, FlightPoint, Sampling, Termination};
 use reentry::{Aerodynamics, Atmosphere, Case, FlightPath, Planet, Scenario, Stop, Trajectory, Vehicle};
 
@@ -425,10 +425,10 @@ fn arrivals_with_events_are_the_ends_of_the_flights() {
     ];
     let scenarios: Vec<_> = cases.iter().map(|case| Scenario::new(case.clone()).unwrap()).collect();
     let never = AtomicBool::new(false);
-    let in_lanes = arrivals(&scenarios, &never);
+    let in_lanes = ends_of_all(&scenarios, &never);
     for ((scenario, case), in_lanes) in scenarios.iter().zip(&cases).zip(in_lanes) {
         let flight = fly(case);
-        for end in [arrival(scenario, &never).unwrap(), in_lanes.unwrap()] {
+        for end in [arrival(scenario, &never).unwrap(), *in_lanes.unwrap().arrival()] {
             assert_eq!(end.time.to_bits(), flight.end_time().to_bits());
             assert_eq!((end.state, end.termination), (flight.arrival().state, flight.termination()));
         }

@@ -15,7 +15,7 @@ fn zonal(degree: usize) -> Planet {
 
 /// Gravity at a planet-fixed position.
 fn gravity(planet: &Planet, position: &Vector3<f64>) -> Vector3<f64> {
-    planet.gravity(position.norm(), &position.normalize())
+    planet.gravity(position.norm().recip(), &position.normalize())
 }
 
 /// From the surface to a few radii, at every latitude.

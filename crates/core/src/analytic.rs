@@ -232,7 +232,7 @@ impl Theory {
             eta_by_density,
             k: lift_coefficient / drag_coefficient,
             beta,
-            g0: case.planet.point_gravity(r0),
+            g0: case.planet.point_gravity(r0.recip()),
             r0,
             speed_e: entry.speed,
             gamma_e: entry.flight_path_angle,

@@ -186,7 +186,9 @@ pub fn sutton_graves<S: Scalar>(constant: f64, density: S, speed: S, nose_radius
 /// (1957), 1256-1257.
 #[inline(always)]
 pub fn detra_kemp_riddell<S: Scalar>(density: S, speed: S, nose_radius: f64) -> S {
-    (density / (SEA_LEVEL_DENSITY * nose_radius)).sqrt() * power(speed / CIRCULAR_SPEED, 3.15) * FLUX_AT_CIRCULAR_SPEED
+    (density / (SEA_LEVEL_DENSITY * nose_radius)).sqrt()
+        * power(speed * CIRCULAR_SPEED.recip(), 3.15)
+        * FLUX_AT_CIRCULAR_SPEED
 }
 
 /// The convective flux by Chapman, W/m².
@@ -203,7 +205,7 @@ pub fn detra_kemp_riddell<S: Scalar>(density: S, speed: S, nose_radius: f64) -> 
 /// D. R. Chapman, An Approximate Analytical Method for Studying Entry into Planetary Atmospheres, NASA TR R-11, 1959.
 #[inline(always)]
 pub fn chapman<S: Scalar>(density: S, speed: S, nose_radius: f64) -> S {
-    let speed = speed / CIRCULAR_SPEED;
+    let speed = speed * CIRCULAR_SPEED.recip();
     (density / (SEA_LEVEL_DENSITY * nose_radius)).sqrt() * (speed * speed * speed) * FLUX_AT_CIRCULAR_SPEED
 }
 

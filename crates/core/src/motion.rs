@@ -337,9 +337,10 @@ impl<P: Scalar> Forces<P> {
         let State { position, velocity, .. } = state;
         let rotation = self.models.planet.rotation_rate;
         let centrifugal = rotation * rotation;
-        let Directions { radius, up, .. } = &flow.directions;
+        let Directions { over_radius, up, .. } = &flow.directions;
         let planet = &self.models.planet;
-        let mut fall = if THESIS { planet.gravity_of_point(*radius, up) } else { planet.gravity(*radius, up) };
+        let mut fall =
+            if THESIS { planet.gravity_of_point(*over_radius, up) } else { planet.gravity(*over_radius, up) };
         fall.x += velocity.y * (2.0 * rotation) + position.x * centrifugal;
         fall.y += velocity.x * (-2.0 * rotation) + position.y * centrifugal;
         fall
@@ -824,15 +825,16 @@ impl<P: Scalar> Forces<P> {
     #[inline(always)]
     fn longest_fall<const THESIS: bool, S: Over<P> + Real>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> S {
         let State { position, velocity, .. } = state;
-        let radius = flow.directions.radius;
+        let over_radius = flow.directions.over_radius;
         let to_air = (flow.arguments.altitude - self.models.atmosphere.sensible_altitude()).max(S::zero());
         let depth = to_air * 0.5 + SCALE_HEIGHTS_A_STEP * self.models.atmosphere.scale_height();
-        let rise = position.dot(velocity) / radius;
+        let rise = position.dot(velocity) * over_radius;
         let inertial = inertial_velocity(&self.models.planet, state);
         let level_squared = inertial.dot(&inertial) - rise * rise;
         let thrust = if THESIS { None } else { self.push_on(time, state, flow) };
         let thrust = thrust.map_or_else(S::zero, |thrust| length(&thrust));
-        let fall = (self.models.planet.point_gravity(radius) - level_squared / radius + thrust).max(S::zero());
+        let fall =
+            (self.models.planet.point_gravity(over_radius) - level_squared * over_radius + thrust).max(S::zero());
         // The positive root of rise t - fall t²/2 = -depth.
         let root = (rise * rise + fall * depth * 2.0).sqrt();
         S::select((-rise).less_than(0.0), (rise + root) / fall, depth * 2.0 / (root - rise))

@@ -151,29 +151,29 @@ impl Planet {
         self.shape.semi_axes().0
     }
 
-    /// Acceleration of the gravity of a point, m/s², towards the centre, at a distance from it in m.
+    /// Acceleration of the gravity of a point, m/s², towards the centre; `over_radius`: one over the distance from it, 1/m.
     ///
     /// # Reference
     /// Jameson 2006, equation 33: g = g₀ (r₀/r)².
     #[inline(always)]
-    pub fn point_gravity<S: Scalar>(&self, radius: S) -> S {
-        (radius * radius).recip() * self.gravitational_parameter
+    pub fn point_gravity<S: Scalar>(&self, over_radius: S) -> S {
+        over_radius * over_radius * self.gravitational_parameter
     }
 
     /// [`gravity`](Self::gravity) without its harmonics.
     #[inline(always)]
-    pub(crate) fn gravity_of_point<S: Scalar>(&self, radius: S, up: &Vector3<S>) -> Vector3<S> {
-        let inward = self.point_gravity(radius);
+    pub(crate) fn gravity_of_point<S: Scalar>(&self, over_radius: S, up: &Vector3<S>) -> Vector3<S> {
+        let inward = self.point_gravity(over_radius);
         up.map(|component| component * -inward)
     }
 
-    /// Acceleration of gravity, m/s², at a distance from the centre, m, in the planet-fixed direction `up`, of length 1.
+    /// Acceleration of gravity, m/s², in the planet-fixed direction `up`, of length 1; `over_radius`: one over the distance from the centre, 1/m.
     #[inline(always)]
-    pub fn gravity<S: Scalar>(&self, radius: S, up: &Vector3<S>) -> Vector3<S> {
+    pub fn gravity<S: Scalar>(&self, over_radius: S, up: &Vector3<S>) -> Vector3<S> {
         match self.gravity {
-            Gravity::InverseSquare => self.gravity_of_point(radius, up),
+            Gravity::InverseSquare => self.gravity_of_point(over_radius, up),
             Gravity::Zonal(_) => {
-                let Pull { inward, axial } = self.pull(radius, up.z);
+                let Pull { inward, axial } = self.pull(over_radius, up.z);
                 let mut gravity = up.map(|component| component * -inward);
                 gravity.z -= axial;
                 gravity
@@ -181,14 +181,15 @@ impl Planet {
         }
     }
 
-    /// Acceleration of gravity, m/s², by its parts along the radius and along the axis, at the sine of a geocentric latitude.
+    /// Acceleration of gravity, m/s², by its parts along the radius and along the axis, at the sine of a geocentric latitude; `over_radius`: one over
+    /// the distance from the centre, 1/m.
     #[inline(always)]
-    pub(crate) fn pull<S: Scalar>(&self, radius: S, sin_latitude: S) -> Pull<S> {
-        let inward = self.point_gravity(radius);
+    pub(crate) fn pull<S: Scalar>(&self, over_radius: S, sin_latitude: S) -> Pull<S> {
+        let inward = self.point_gravity(over_radius);
         match &self.gravity {
             Gravity::InverseSquare => Pull { inward, axial: S::zero() },
             Gravity::Zonal(zonal) => {
-                let over_point = zonal.pull(sin_latitude, radius.recip() * self.equatorial_radius());
+                let over_point = zonal.pull(sin_latitude, over_radius * self.equatorial_radius());
                 Pull { inward: over_point.inward * inward, axial: over_point.axial * inward }
             }
         }

@@ -148,7 +148,8 @@ pub const MOST_BODIES: usize = 64;
 /// A case that was checked, and can be flown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    case: Case,
+    /// Shared with the flights of the scenario.
+    case: Arc<Case>,
     starts_on_stop_altitude: bool,
 }
 
@@ -423,7 +424,7 @@ impl Scenario {
     pub(crate) fn unchecked(case: Case) -> Self {
         let altitude = case.planet.shape.altitude(&case.initial_state.position);
         let starts_on_stop_altitude = altitude <= case.stop.altitude + ON_STOP_ALTITUDE;
-        Self { case, starts_on_stop_altitude }
+        Self { case: Arc::new(case), starts_on_stop_altitude }
     }
 
     /// The case.
@@ -431,12 +432,17 @@ impl Scenario {
         &self.case
     }
 
+    /// The same, to be kept.
+    pub(crate) fn shared_case(&self) -> Arc<Case> {
+        Arc::clone(&self.case)
+    }
+
     /// The same flight at a finer tolerance within its bound: to a hundredth, a method of order 8 takes 1.8 times the steps, and one whose error is
     /// estimated to order 3 takes 3.2 times as many.
     pub(crate) fn finer(&self, relative_tolerance: f64) -> Self {
         let step_limit = self.case.solver.step_limit.saturating_mul(4);
         let solver = Solver { relative_tolerance, step_limit, ..self.case.solver };
-        Self { case: Case { solver, ..self.case.clone() }, ..*self }
+        Self { case: Arc::new(Case { solver, ..Case::clone(&self.case) }), ..*self }
     }
 
     /// The same flight at this tolerance, if its own is finer: it takes fewer steps.
@@ -444,7 +450,7 @@ impl Scenario {
     pub fn no_finer_than(self, relative_tolerance: f64) -> Self {
         let relative_tolerance = relative_tolerance.max(self.case.solver.relative_tolerance);
         let solver = Solver { relative_tolerance, ..self.case.solver };
-        Self { case: Case { solver, ..self.case }, ..self }
+        Self { case: Arc::new(Case { solver, ..Arc::unwrap_or_clone(self.case) }), ..self }
     }
 
     /// Whether the flight starts on the stop altitude, where it ends unless it leaves it upward.
@@ -534,11 +540,7 @@ impl Case {
 
     /// What its states hold, with the heat load or without.
     pub(crate) fn state_layout_with(&self, heat_load: bool) -> StateLayout {
-        match (self.burns_propellant(), heat_load) {
-            (true, _) => StateLayout::HeatLoadAndMass,
-            (false, true) => StateLayout::HeatLoad,
-            (false, false) => StateLayout::Motion,
-        }
+        if heat_load || self.burns_propellant() { StateLayout::HeatLoadAndMass } else { StateLayout::Motion }
     }
 
     /// From where ranges are measured.

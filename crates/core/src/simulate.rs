@@ -11,7 +11,9 @@ mod step_view;
 mod stop_altitude;
 
 pub use bodies::{BodyError, Flights, SeparatedBody, simulate_with_bodies};
-pub use lanes::{arrivals, ends_of_all, extremes_of_all};
+pub use lanes::{ends_of_all, extremes_of_all};
+
+use std::mem::take;
 
 use crate::integrate::{AnyStep, Step};
 use crate::interrupt::Interrupt;
@@ -137,7 +139,7 @@ fn name(switch: Switch) -> &'static str {
 /// When the flight needs too many or too small steps, when it reaches a singularity of the spherical equations, when thrust burns all
 /// of the vehicle or brakes it to rest, and when interrupted.
 pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajectory, SimulationError> {
-    record(scenario, Kept::Steps, interrupt).map(|flown| Trajectory::new(scenario.case().clone(), flown))
+    record(scenario, Kept::Steps, interrupt).map(|flown| Trajectory::new(scenario.shared_case(), flown))
 }
 
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its start, its end, its events and its peaks.
@@ -145,7 +147,7 @@ pub fn simulate(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Trajec
 /// # Errors
 /// Those of [`simulate`].
 pub fn extremes(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Extremes, SimulationError> {
-    record(scenario, Kept::Extremes, interrupt).map(|flown| Extremes::new(scenario.case().clone(), flown))
+    record(scenario, Kept::Extremes, interrupt).map(|flown| Extremes::new(scenario.shared_case(), flown))
 }
 
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its start, its end and its events.
@@ -153,7 +155,7 @@ pub fn extremes(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Extrem
 /// # Errors
 /// Those of [`simulate`], except that loads beyond all numbers go unnoticed.
 pub fn ends(scenario: &Scenario, interrupt: &dyn Interrupt) -> Result<Ends, SimulationError> {
-    record(scenario, Kept::Ends, interrupt).map(|flown| Ends::new(scenario.case().clone(), flown))
+    record(scenario, Kept::Ends, interrupt).map(|flown| Ends::new(scenario.shared_case(), flown))
 }
 
 /// Flies the scenario like [`simulate`], but keeps nothing of the flight except its end, and, but for events, allocates no memory.
@@ -180,7 +182,7 @@ impl ForFormulation for End<'_> {
         AnyStep: From<Step<N>>,
     {
         let motion = F::of_plain(self.scenario.case().forces());
-        fly(&mut Flight::start(self.scenario, motion, self.interrupt)?, |_| Ok(()))
+        fly(&mut Flight::start(self.scenario, motion, self.interrupt)?, &mut |_| Ok(()))
     }
 }
 
@@ -218,29 +220,9 @@ impl ForFormulation for Record<'_> {
         let Self { scenario, kept, interrupt } = self;
         let mut flight = Flight::start(scenario, F::of_plain(scenario.case().forces()), interrupt)?;
         let mut recorder = Recorder::new(&flight, kept, interrupt)?;
-        let arrival = fly(&mut flight, |view| recorder.observe(view))?;
-        recorder.finish(flight, arrival)
+        let arrival = fly(&mut flight, &mut |view| recorder.observe(view))?;
+        recorder.finish(&mut flight, arrival)
     }
-}
-
-/// What watches a flight step by step, and makes of it what is wanted.
-trait Observer<F, const N: usize> {
-    /// What is wanted.
-    type Outcome;
-
-    /// Whether it takes the loads at the ends of steps.
-    fn takes_loads(&self) -> bool {
-        false
-    }
-
-    /// Notes a step in which nothing happens, if that is all that it needs of it.
-    fn observe_quietly(&mut self, step: &QuietStep) -> bool;
-
-    /// Notes a step.
-    fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError>;
-
-    /// What is wanted of the flight, which has ended.
-    fn finish(self, flight: Flight<F, N>, arrival: Arrival) -> Result<Self::Outcome, SimulationError>;
 }
 
 /// A step in which nothing happens.
@@ -253,25 +235,6 @@ struct QuietStep<'a> {
     /// s.
     end_time: f64,
     read: &'a EndReadings,
-}
-
-/// Wants the end alone.
-struct EndObserver;
-
-impl<F, const N: usize> Observer<F, N> for EndObserver {
-    type Outcome = Arrival;
-
-    fn observe_quietly(&mut self, _: &QuietStep) -> bool {
-        true
-    }
-
-    fn observe(&mut self, _: &StepView<F, N>) -> Result<(), SimulationError> {
-        Ok(())
-    }
-
-    fn finish(self, _: Flight<F, N>, arrival: Arrival) -> Result<Arrival, SimulationError> {
-        Ok(arrival)
-    }
 }
 
 /// Keeps a flight.
@@ -299,18 +262,13 @@ impl<'a> Recorder<'a> {
             peak_tracker: PeakTracker::new(&flight.motion, &flight.integrator, may_lift)?,
         })
     }
-}
 
-impl<F: Formulation<N>, const N: usize> Observer<F, N> for Recorder<'_>
-where
-    AnyStep: From<Step<N>>,
-{
-    type Outcome = Flown;
-
+    /// Whether it takes the loads at the ends of steps.
     fn takes_loads(&self) -> bool {
         self.kept != Kept::Ends
     }
 
+    /// Notes a step in which nothing happens, if that is all that it needs of it.
     fn observe_quietly(&mut self, step: &QuietStep) -> bool {
         match self.kept {
             Kept::Ends => true,
@@ -319,7 +277,11 @@ where
         }
     }
 
-    fn observe(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError> {
+    /// Notes a step.
+    fn observe<F: Formulation<N>, const N: usize>(&mut self, view: &StepView<F, N>) -> Result<(), SimulationError>
+    where
+        AnyStep: From<Step<N>>,
+    {
         let Self { kept, interrupt, steps, peak_tracker, .. } = self;
         if *kept == Kept::Ends {
             return Ok(());
@@ -337,33 +299,53 @@ where
         Ok(())
     }
 
-    fn finish(self, flight: Flight<F, N>, arrival: Arrival) -> Result<Flown, SimulationError> {
-        let Self { kept, start, steps, mut peak_tracker, .. } = self;
+    /// What is kept of the flight, which has ended.
+    fn finish<F: Formulation<N>, const N: usize>(
+        &mut self,
+        flight: &mut Flight<F, N>,
+        arrival: Arrival,
+    ) -> Result<Flown, SimulationError> {
+        let Self { kept, start, steps, peak_tracker, .. } = self;
         let end = flight.instant();
-        if kept != Kept::Ends {
+        if *kept != Kept::Ends {
             peak_tracker.end(flight.motion.forces(), &end)?;
         }
         let never_lifted = flight.is_held().then_some(Warning::NeverLifted { time: end.time });
-        let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, mut warnings, .. } = peak_tracker;
-        let FlightLog { mut phases, event_records, separations, warnings: others } = flight.log;
+        let PeakTracker { peaks_of_flight: peaks, peaks_of_phases, warnings, .. } = peak_tracker;
+        let (steps, peaks_of_phases, mut warnings) = (take(steps), take(peaks_of_phases), take(warnings));
+        let FlightLog { mut phases, event_records, separations, warnings: others } = take(&mut flight.log);
         phases.insert(0, Phase::first(flight.scenario.case()));
         warnings.extend(others);
         warnings.extend(never_lifted);
-        Ok(Flown { start, steps, phases, event_records, separations, end, arrival, peaks, peaks_of_phases, warnings })
+        Ok(Flown {
+            start: *start,
+            steps,
+            phases,
+            event_records,
+            separations,
+            end,
+            arrival,
+            peaks: *peaks,
+            peaks_of_phases,
+            warnings,
+        })
     }
 }
+
+/// What looks at every step of a flight. Not a parameter: the code of flights is long, and is compiled once for each formulation.
+type Observe<'a, F, const N: usize> = dyn FnMut(&StepView<F, N>) -> Result<(), SimulationError> + 'a;
 
 /// Flies to the end and shows every step on the way.
 fn fly<F: Formulation<N>, const N: usize>(
     flight: &mut Flight<F, N>,
-    mut observe: impl FnMut(&StepView<F, N>) -> Result<(), SimulationError>,
+    observe: &mut Observe<F, N>,
 ) -> Result<Arrival, SimulationError> {
     if let Some(arrival) = flight.begin()? {
         return Ok(arrival);
     }
     loop {
         let step = flight.advance()?;
-        if let Some(arrival) = flight.pass(&step, None, &mut observe)? {
+        if let Some(arrival) = flight.pass(&step, None, observe)? {
             return Ok(arrival);
         }
     }

@@ -13,7 +13,7 @@ pub use sampling::{Sampling, TooManyInstants};
 pub(crate) use stored_step::{Motion, StoredStep};
 
 use std::f64::consts::TAU;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use ground_track::GroundTrack;
 use nalgebra::Vector3;
@@ -362,7 +362,7 @@ pub(crate) struct SeparationRecord {
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
-    pub(crate) case: Case,
+    pub(crate) case: Arc<Case>,
     pub(crate) flown: Flown,
     pub(crate) origin: Origin,
     /// Made when it is first needed.
@@ -421,7 +421,7 @@ impl InsideStep<'_> {
 }
 
 impl Trajectory {
-    pub(crate) fn new(case: Case, flown: Flown) -> Self {
+    pub(crate) fn new(case: Arc<Case>, flown: Flown) -> Self {
         let mut flight = Self::unexamined(case, flown);
         let ranges = flight.outside_ranges();
         flight.flown.warnings.extend(ranges);
@@ -432,7 +432,7 @@ impl Trajectory {
     }
 
     /// The same without the warnings that are found on its steps.
-    fn unexamined(case: Case, flown: Flown) -> Self {
+    fn unexamined(case: Arc<Case>, flown: Flown) -> Self {
         let origin = Origin::of(case.track_start());
         Self { case, flown, origin, ground_track: OnceLock::new() }
     }
@@ -654,7 +654,7 @@ impl Trajectory {
     }
 
     fn forces(&self, phase: usize, mode: ModelMode) -> Forces {
-        let mut forces = self.flown.phases[phase].forces(&self.case);
+        let mut forces = self.flown.phases[phase].forces(&*self.case);
         forces.enter(mode);
         forces
     }

@@ -7,8 +7,6 @@ use super::Step;
 pub(crate) enum AnyStep {
     /// Of place and motion.
     Six(Step<6>),
-    /// With the heat load.
-    Seven(Step<7>),
     /// With heat load and mass.
     Eight(Step<8>),
 }
@@ -16,12 +14,6 @@ pub(crate) enum AnyStep {
 impl From<Step<6>> for AnyStep {
     fn from(step: Step<6>) -> Self {
         Self::Six(step)
-    }
-}
-
-impl From<Step<7>> for AnyStep {
-    fn from(step: Step<7>) -> Self {
-        Self::Seven(step)
     }
 }
 
@@ -36,7 +28,6 @@ impl AnyStep {
     pub(crate) fn start_time(&self) -> f64 {
         match self {
             Self::Six(step) => step.start_time,
-            Self::Seven(step) => step.start_time,
             Self::Eight(step) => step.start_time,
         }
     }
@@ -45,7 +36,6 @@ impl AnyStep {
     pub(crate) fn end_time(&self) -> f64 {
         match self {
             Self::Six(step) => step.end_time,
-            Self::Seven(step) => step.end_time,
             Self::Eight(step) => step.end_time,
         }
     }
@@ -54,7 +44,6 @@ impl AnyStep {
     pub(crate) fn is_implicit(&self) -> bool {
         match self {
             Self::Six(step) => step.is_implicit(),
-            Self::Seven(step) => step.is_implicit(),
             Self::Eight(step) => step.is_implicit(),
         }
     }
@@ -63,7 +52,6 @@ impl AnyStep {
     pub(crate) fn time(&self, part: f64) -> f64 {
         match self {
             Self::Six(step) => step.time(part),
-            Self::Seven(step) => step.time(part),
             Self::Eight(step) => step.time(part),
         }
     }

@@ -35,6 +35,9 @@ pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: &impl Inside)
     if stays_above(start, end, length) {
         return None;
     }
+    if falls_evenly(start, end, length) {
+        return crossing_after((0.0, start), (1.0, end), inside);
+    }
     let mut from = (0.0, start);
     for part in [0.25, 0.5, 0.75, 1.0] {
         let to = (part, if part < 1.0 { inside.at(part) } else { end });
@@ -60,6 +63,13 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
     end.re <= 0.0 || dips()
 }
 
+/// Whether a quantity comes from above zero to below it at rates at both ends that are near the mean one: it falls all the way.
+fn falls_evenly(start: Dual64, end: Dual64, length: f64) -> bool {
+    let mean = (end.re - start.re) / length;
+    let is_near_mean = |rate: f64| rate > UNEVEN * mean && UNEVEN * rate < mean;
+    start.re > 0.0 && end.re < 0.0 && is_near_mean(start.eps) && is_near_mean(end.eps)
+}
+
 /// The part of the step at which the quantity first comes from above zero to zero.
 ///
 /// The inside of the step is looked at where the ends ask for it: the quantity is above zero at one end alone, or its rate changes sign
@@ -68,6 +78,9 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
 pub fn first_crossing(start: Dual64, end: Dual64, length: f64, closely: bool, inside: &impl Inside) -> Option<f64> {
     if !may_cross(start, end, length, closely) {
         return None;
+    }
+    if !closely && falls_evenly(start, end, length) {
+        return crossing_after((0.0, start), (1.0, end), inside);
     }
     let mut from = (0.0, start);
     for part in [0.25, 0.5, 0.75, 1.0] {
@@ -203,6 +216,9 @@ fn crossing_after(above: Sample, end: Sample, inside: &impl Inside) -> Option<f6
 fn turning_point(a: Sample, b: Sample, inside: &impl Inside) -> f64 {
     root::bracketed(|part| inside.at(part).eps, (a.0, a.1.eps), (b.0, b.1.eps), TURNING_POINT_RESOLUTION)
 }
+
+/// A quantity falls evenly through a step if its rates at the ends differ from the mean one by less than this factor.
+const UNEVEN: f64 = 2.0;
 
 /// In a step a quantity changes at no more than so many times the greater of its rates at the ends.
 const REACH: f64 = 1.5;

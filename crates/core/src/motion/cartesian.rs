@@ -21,14 +21,6 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Cartesian<P> {
     }
 }
 
-/// With the heat load, J/m².
-impl<P: Scalar, S: Over<P>> System<S, 7> for Cartesian<P> {
-    #[inline(always)]
-    fn derivative(&self, time: S, numbers: &[S; 7]) -> [S; 7] {
-        self.rates(time, numbers)
-    }
-}
-
 /// With the heat load, J/m², and the mass, kg.
 impl<P: Scalar, S: Over<P>> System<S, 8> for Cartesian<P> {
     #[inline(always)]

@@ -3,11 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{LIFT_FADE_ANGLE, WIND_FADE_ANGLE};
-use crate::scalar::{Scalar, length, reciprocal_or_one};
+use crate::scalar::{Scalar, length, reciprocals_or_one};
 
 /// Where a state points.
 pub(super) struct Directions<S: nalgebra::Scalar> {
-    pub(super) radius: S,
+    /// 1/r, 1/m.
+    pub(super) over_radius: S,
     pub(super) speed: S,
     /// r̂.
     pub(super) up: Vector3<S>,
@@ -24,10 +25,9 @@ impl<S: Scalar> Directions<S> {
         // The three roots do not wait for each other.
         let across = position.cross(velocity);
         let (radius, speed, moment) = (length(position), length(velocity), length(&across));
-        let (over_radius, over_speed) = (reciprocal_or_one(radius), reciprocal_or_one(speed));
-        let over_both = over_radius * over_speed;
+        let ([over_radius, over_speed], over_both) = reciprocals_or_one([radius, speed]);
         Self {
-            radius,
+            over_radius,
             speed,
             up: position.map(|component| component * over_radius),
             ahead: velocity.map(|component| component * over_speed),
@@ -44,8 +44,8 @@ impl<S: Scalar> Directions<S> {
 /// and is 1 outside the cone.
 #[inline(always)]
 pub(super) fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
-    let x = cos_gamma / LIFT_FADE_ANGLE;
-    let faded = x * x * (x * (x * 6.0 - 15.0) + 10.0) / LIFT_FADE_ANGLE;
+    let x = cos_gamma * LIFT_FADE_ANGLE.recip();
+    let faded = x * x * (x * (x * 6.0 - 15.0) + 10.0) * LIFT_FADE_ANGLE.recip();
     let in_cone = cos_gamma.less_than(LIFT_FADE_ANGLE);
     let full = S::select(in_cone, S::one(), cos_gamma).recip();
     S::select(in_cone, faded, full)
@@ -54,9 +54,9 @@ pub(super) fn lift_fade_over_cosine<S: Scalar>(cos_gamma: S) -> S {
 /// How fast the share of the lift that is left grows with cos γ in the cone, per rad: with x = cos γ/ε, 30 x² (1 - x)²/ε. Outside it is 0.
 #[inline(always)]
 pub(super) fn lift_fade_slope<S: Scalar>(cos_gamma: S) -> S {
-    let x = cos_gamma / LIFT_FADE_ANGLE;
+    let x = cos_gamma * LIFT_FADE_ANGLE.recip();
     let root = x * (-x + 1.0);
-    S::select(x.less_than(1.0), root * root * 30.0 / LIFT_FADE_ANGLE, S::zero())
+    S::select(x.less_than(1.0), root * root * (30.0 / LIFT_FADE_ANGLE), S::zero())
 }
 
 /// A velocity less that of a wind to the east and to the north, m/s, at a planet-fixed position, m.
@@ -69,13 +69,12 @@ pub(super) fn relative_to_air<S: Scalar>(
     let [x, y, z] = [position.x, position.y, position.z];
     // ẑ × r, of the length of the distance from the axis.
     let equatorial = (x * x + y * y).sqrt();
-    let over_equatorial = reciprocal_or_one(equatorial);
-    let over_radius = reciprocal_or_one(length(position));
+    let ([over_equatorial, over_radius], over_both) = reciprocals_or_one([equatorial, length(position)]);
     let fade = wind_fade(equatorial * over_radius);
     let [east, north] = [east * fade, north * fade];
     let east = Vector3::new(-y, x, S::zero()) * (over_equatorial * east);
     let to_north = Vector3::new(-x * z, -y * z, x * x + y * y);
-    let north = to_north * (over_equatorial * over_radius * north);
+    let north = to_north * (over_both * north);
     velocity - east - north
 }
 
@@ -85,7 +84,7 @@ pub(super) fn relative_to_air<S: Scalar>(
 /// opposite direction there, and what drifts with it could not go on.
 #[inline(always)]
 pub(super) fn wind_fade<S: Scalar>(cos_latitude: S) -> S {
-    let x = cos_latitude / WIND_FADE_ANGLE;
+    let x = cos_latitude * WIND_FADE_ANGLE.recip();
     let faded = x * x * x * (x * (x * 6.0 - 15.0) + 10.0);
     S::select(cos_latitude.less_than(WIND_FADE_ANGLE), faded, S::one())
 }

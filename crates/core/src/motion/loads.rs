@@ -68,7 +68,7 @@ impl<P: Scalar> Forces<P> {
     /// The same in the air that meets the vehicle, with its Mach number.
     pub(crate) fn loads_in<S: Over<P>>(&self, time: S, state: &State<S>, flow: &Flow<S>) -> Loads<S> {
         let State { position, velocity, .. } = state;
-        let Directions { radius, speed, up, ahead, .. } = &flow.directions;
+        let Directions { over_radius, speed, up, ahead, .. } = &flow.directions;
         let density = self.density(flow);
         let dynamic_pressure = density * *speed * *speed * 0.5;
         let specific_force = OnceCell::new();
@@ -83,7 +83,7 @@ impl<P: Scalar> Forces<P> {
             // -V̇ = D/m + g sin γ - ω² (x v̂_x + y v̂_y): lift and the Coriolis force are across the velocity   (29)
             let air = self.air::<false, _>(time, flow);
             let outward = position.x * ahead.x + position.y * ahead.y;
-            let Pull { inward, axial } = self.models.planet.pull(*radius, up.z);
+            let Pull { inward, axial } = self.models.planet.pull(*over_radius, up.z);
             air.drag * density + (inward * up.dot(ahead) + axial * ahead.z)
                 - outward * self.models.planet.rotation_rate.powi(2)
         } else {

@@ -28,14 +28,6 @@ impl<P: Scalar, S: Over<P>> System<S, 6> for Spherical<P> {
     }
 }
 
-/// With the heat load, J/m².
-impl<P: Scalar, S: Over<P>> System<S, 7> for Spherical<P> {
-    #[inline(always)]
-    fn derivative(&self, time: S, numbers: &[S; 7]) -> [S; 7] {
-        self.rates_of_more(time, numbers)
-    }
-}
-
 /// With the heat load, J/m², and the mass, kg.
 impl<P: Scalar, S: Over<P>> System<S, 8> for Spherical<P> {
     #[inline(always)]
@@ -72,7 +64,7 @@ impl<P: Scalar> Spherical<P> {
         let (sin_phi, cos_phi) = geocentric_latitude.sin_cos();
         let (sin_gamma, cos_gamma) = flight_path_angle.sin_cos();
         let (sin_psi, cos_psi) = heading.sin_cos();
-        let omega = planet.rotation_rate;
+        let (omega, over_r) = (planet.rotation_rate, r.recip());
 
         let altitude = r - planet.shape.surface_radius(sin_phi, cos_phi);
         let velocity = Velocity { speed: v, sin_gamma, cos_gamma, sin_psi, cos_psi };
@@ -82,8 +74,11 @@ impl<P: Scalar> Spherical<P> {
             Some(thrust) => [ahead + thrust[0], up + thrust[1], left_over_cos_gamma + thrust[2]],
             None => [ahead, up, left_over_cos_gamma],
         };
-        let Pull { inward, axial } =
-            if THESIS { Pull { inward: planet.point_gravity(r), axial: S::zero() } } else { planet.pull(r, sin_phi) };
+        let Pull { inward, axial } = if THESIS {
+            Pull { inward: planet.point_gravity(over_r), axial: S::zero() }
+        } else {
+            planet.pull(over_r, sin_phi)
+        };
         // Gravity towards the centre, and to the north.
         let (g, g_north) = (inward + axial * sin_phi, -axial * cos_phi);
         // rω² cos φ
@@ -94,20 +89,20 @@ impl<P: Scalar> Spherical<P> {
         // θ̇ = V cos γ cos ψ / (r cos φ)   (10)
         let longitude_rate = v * cos_gamma * cos_psi * (r * cos_phi).recip();
         // φ̇ = V cos γ sin ψ / r   (11)
-        let latitude_rate = v * cos_gamma * sin_psi * r.recip();
+        let latitude_rate = v * cos_gamma * sin_psi * over_r;
         // V̇ = -D/m - g sin γ + g_N cos γ sin ψ + rω² cos φ (cos φ sin γ - sin φ sin ψ cos γ)   (29)
         let v_rate = ahead - g * sin_gamma
             + g_north * cos_gamma * sin_psi
             + centrifugal * (cos_phi * sin_gamma - sin_phi * sin_psi * cos_gamma);
         // Vγ̇ = (L/m) cos σ - g cos γ - g_N sin γ sin ψ + (V²/r) cos γ + 2Vω cos φ cos ψ + rω² cos φ (cos φ cos γ + sin φ sin ψ sin γ)   (30)
         let gamma_rate = (up - g * cos_gamma - g_north * sin_gamma * sin_psi
-            + v * v * r.recip() * cos_gamma
+            + v * v * over_r * cos_gamma
             + v * cos_phi * cos_psi * (2.0 * omega)
             + centrifugal * (cos_phi * cos_gamma + sin_phi * sin_psi * sin_gamma))
             * v.recip();
         // Vψ̇ = L sin σ/(m cos γ) + g_N cos ψ/cos γ - (V²/r) cos γ cos ψ tan φ + 2Vω (sin ψ cos φ tan γ - sin φ) - (rω²/cos γ) sin φ cos φ cos ψ   (31)
         let psi_rate = (left_over_cos_gamma + g_north * cos_psi * cos_gamma.recip()
-            - v * v * r.recip() * cos_gamma * cos_psi * sin_phi * cos_phi.recip()
+            - v * v * over_r * cos_gamma * cos_psi * sin_phi * cos_phi.recip()
             + v * (sin_psi * cos_phi * sin_gamma * cos_gamma.recip() - sin_phi) * (2.0 * omega)
             - centrifugal * sin_phi * cos_psi * cos_gamma.recip())
             * v.recip();

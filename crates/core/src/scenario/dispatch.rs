@@ -67,9 +67,7 @@ pub(crate) trait ForFormulation {
 pub(crate) enum StateLayout {
     /// Nothing.
     Motion,
-    /// The heat load.
-    HeatLoad,
-    /// The heat load and the mass.
+    /// The heat load and the mass. Where one of them alone changes, it is not worth a size of states of its own, for which all would be compiled.
     HeatLoadAndMass,
 }
 
@@ -78,9 +76,7 @@ pub(crate) fn dispatch<C: ForFormulation>(equations: Equations, layout: StateLay
     match (equations, layout) {
         (Equations::Cartesian, StateLayout::Motion) => computation.with::<Cartesian, 6>(),
         (Equations::Spherical, StateLayout::Motion) => computation.with::<Spherical, 6>(),
-        (Equations::Cartesian, StateLayout::HeatLoad) => computation.with::<Cartesian, 7>(),
         (Equations::Cartesian, StateLayout::HeatLoadAndMass) => computation.with::<Cartesian, 8>(),
-        (Equations::Spherical, StateLayout::HeatLoad) => computation.with::<Spherical, 7>(),
         (Equations::Spherical, StateLayout::HeatLoadAndMass) => computation.with::<Spherical, 8>(),
     }
 }

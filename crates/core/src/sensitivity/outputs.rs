@@ -193,7 +193,7 @@ impl<'a, const W: usize> VariedSample<'a, W> {
     fn new(flight: &'a Trajectory, varied: &'a VariedCase<'a, W>, first: usize, sample: &'a Sample<W>) -> Self {
         let Sample { time, state, phase, mode, .. } = sample;
         let phase = phase.map(|number| number.re);
-        let mut forces = phase.forces(&flight.case);
+        let mut forces = phase.forces(&*flight.case);
         forces.enter(*mode);
         let point = flight.point_from(&flight.origin, &forces, &phase, time.re, &state.map(|number| number.re));
         let mut near = Self { flight, varied, first, sample, point, moved_points: Vec::new() };
@@ -242,7 +242,7 @@ impl<'a, const W: usize> VariedSample<'a, W> {
         let moved = |number: Dual<W>| number.re + offset * slope(&number, variation);
         let origin = Origin::of(&State::from(self.varied.track_start()).map(moved).planet_fixed());
         let phase = phase.map(moved);
-        let mut forces = phase.forces(&self.flight.case);
+        let mut forces = phase.forces(&*self.flight.case);
         forces.enter(*mode);
         let point = self.flight.point_from(&origin, &forces, &phase, moved(*time), &state.map(moved));
         let ground_distance = self.point.ground_distance + offset * slope(ground_distance, variation);

@@ -9,7 +9,7 @@ use super::detector::{Detector, cut_at_first};
 use super::model_boundaries::{BoundaryCrossing, ModelBoundaryDetector, next_boundary_in_time};
 use super::step_view::StepView;
 use super::stop_altitude::StopAltitudeDetector;
-use super::{Observer, QuietStep, SimulationError};
+use super::{Observe, QuietStep, Recorder, SimulationError};
 use crate::event::{Effect, Separation, ThrustCommand, Tilt};
 use crate::integrate::event::PredictedCrossing;
 use crate::integrate::{IntegrationError, Integrator, Limits, Step};
@@ -160,7 +160,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         &mut self,
         step: &Step<N>,
         read: Option<&EndReadings>,
-        observe: &mut impl FnMut(&StepView<F, N>) -> Result<(), SimulationError>,
+        observe: &mut Observe<F, N>,
     ) -> Result<Option<Arrival>, SimulationError> {
         let Self { motion, integrator, stop_altitude, model_boundaries, conditions, evaluations, log, .. } = self;
         let mut view = StepView::new(motion, step, log.phases.len());
@@ -210,10 +210,10 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         Ok(end)
     }
 
-    /// Passes over a step in which nothing happens that a detector or the observer would have to look for inside it, nor is expected in the next
+    /// Passes over a step in which nothing happens that a detector or the recorder would have to look for inside it, nor is expected in the next
     /// one, as its ends tell: what [`pass`](Self::pass) does then, without the step. Returns whether it is one; otherwise nothing is done.
     /// The integrator is at its end, where so much was `read`.
-    pub(super) fn pass_quietly<O: Observer<F, N>>(&mut self, read: &EndReadings, observer: &mut O) -> bool {
+    pub(super) fn pass_quietly(&mut self, read: &EndReadings, recorder: &mut Recorder) -> bool {
         let Self { motion, integrator, stop_altitude, model_boundaries, conditions, log, .. } = self;
         let (forces, time, state) = (motion.forces(), integrator.time(), integrator.state());
         let length = time - self.time;
@@ -237,7 +237,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             return false;
         }
         let step = QuietStep { forces, phase: log.phases.len(), start_time: self.time, end_time: time, read };
-        if !observer.observe_quietly(&step) {
+        if !recorder.observe_quietly(&step) {
             return false;
         }
         stop_altitude.go_on(read.altitude, length);

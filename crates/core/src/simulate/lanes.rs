@@ -1,7 +1,9 @@
 //! Many flights at once, in the lanes of one computation.
 
+use std::sync::Arc;
+
 use super::flight::Flight;
-use super::{EndObserver, Kept, Observer, Recorder, SimulationError, arrival, record};
+use super::{Kept, Recorder, SimulationError, record};
 use crate::integrate::{AnyStep, LaneBounds, LaneJob, LaneSteps, Step};
 use crate::interrupt::Interrupt;
 use crate::motion::{Cartesian, EndReadings, Forces, Formulation, State};
@@ -18,26 +20,17 @@ const FEW: usize = 2;
 /// So many kinds of forces are told apart among flights that begin.
 const MOST_KINDS: usize = 16;
 
-/// Flies scenarios to their ends: what [`arrival`](super::arrival) gives for each, to the last digit.
+/// Flies scenarios to their ends, and keeps of each what [`ends`](super::ends) does, to the last digit.
 ///
 /// Flights by Cartesian equations share the lanes of a computation while their models and modes are the same; each has steps of its own. The others,
 /// and those that are stiff for as long, are flown one by one.
-pub fn arrivals(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Arrival, SimulationError>> {
-    let mut outcomes = Outcomes::new(scenarios);
-    outcomes.fill_in_lanes::<6, _>(StateLayout::Motion, interrupt, |_| Ok(EndObserver));
-    outcomes.fill_in_lanes::<7, _>(StateLayout::HeatLoad, interrupt, |_| Ok(EndObserver));
-    outcomes.fill_in_lanes::<8, _>(StateLayout::HeatLoadAndMass, interrupt, |_| Ok(EndObserver));
-    outcomes.complete(|scenario| arrival(scenario, interrupt))
-}
-
-/// Flies scenarios as [`arrivals`] does, and keeps of each what [`extremes`](super::extremes) does.
-pub fn extremes_of_all(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Extremes, SimulationError>> {
-    flown_of_all(scenarios, Kept::Extremes, interrupt, Extremes::new)
-}
-
-/// Flies scenarios as [`arrivals`] does, and keeps of each what [`ends`](super::ends) does.
 pub fn ends_of_all(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Ends, SimulationError>> {
     flown_of_all(scenarios, Kept::Ends, interrupt, Ends::new)
+}
+
+/// Flies scenarios as [`ends_of_all`] does, and keeps of each what [`extremes`](super::extremes) does.
+pub fn extremes_of_all(scenarios: &[Scenario], interrupt: &dyn Interrupt) -> Vec<Result<Extremes, SimulationError>> {
+    flown_of_all(scenarios, Kept::Extremes, interrupt, Extremes::new)
 }
 
 /// Flies scenarios, and makes what is wanted of what is kept of them.
@@ -45,37 +38,29 @@ fn flown_of_all<T>(
     scenarios: &[Scenario],
     kept: Kept,
     interrupt: &dyn Interrupt,
-    of: fn(Case, Flown) -> T,
+    of: fn(Arc<Case>, Flown) -> T,
 ) -> Vec<Result<T, SimulationError>> {
-    let mut outcomes = Outcomes::new(scenarios);
-    outcomes.fill_in_lanes::<6, _>(StateLayout::Motion, interrupt, |flight| Recorder::new(flight, kept, interrupt));
-    outcomes.fill_in_lanes::<7, _>(StateLayout::HeatLoad, interrupt, |flight| Recorder::new(flight, kept, interrupt));
-    outcomes.fill_in_lanes::<8, _>(StateLayout::HeatLoadAndMass, interrupt, |flight| {
-        Recorder::new(flight, kept, interrupt)
-    });
-    let flown = outcomes.complete(|scenario| record(scenario, kept, interrupt));
-    let of = |(scenario, flown): (&Scenario, Result<_, _>)| flown.map(|flown| of(scenario.case().clone(), flown));
+    let mut outcomes = Outcomes { scenarios, kept, interrupt, known: scenarios.iter().map(|_| None).collect() };
+    outcomes.fill_in_lanes::<6>(StateLayout::Motion);
+    outcomes.fill_in_lanes::<8>(StateLayout::HeatLoadAndMass);
+    let flown = outcomes.complete();
+    let of = |(scenario, flown): (&Scenario, Result<_, _>)| flown.map(|flown| of(scenario.shared_case(), flown));
     scenarios.iter().zip(flown).map(of).collect()
 }
 
 /// What is known of each scenario.
-struct Outcomes<'a, T> {
+struct Outcomes<'a> {
     scenarios: &'a [Scenario],
-    known: Vec<Option<Result<T, SimulationError>>>,
+    /// Of the flight of each.
+    kept: Kept,
+    interrupt: &'a dyn Interrupt,
+    known: Vec<Option<Result<Flown, SimulationError>>>,
 }
 
-impl<'a, T> Outcomes<'a, T> {
-    fn new(scenarios: &'a [Scenario]) -> Self {
-        Self { scenarios, known: scenarios.iter().map(|_| None).collect() }
-    }
-
+impl Outcomes<'_> {
     /// Flies those that fly in lanes, and whose states are of a layout.
-    fn fill_in_lanes<const N: usize, O: Observer<Cartesian, N, Outcome = T>>(
-        &mut self,
-        layout: StateLayout,
-        interrupt: &'a dyn Interrupt,
-        observer: impl Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
-    ) where
+    fn fill_in_lanes<const N: usize>(&mut self, layout: StateLayout)
+    where
         Cartesian: Formulation<N>,
         Cartesian<Lanes<LANES>>: LaneBounds<N, LANES>,
         AnyStep: From<Step<N>>,
@@ -88,21 +73,15 @@ impl<'a, T> Outcomes<'a, T> {
             (0..self.scenarios.len()).filter(|index| of_layout(&self.scenarios[*index])).collect();
         let Some(steps) = LaneSteps::new() else { return };
         let coming = with_like(self.scenarios, of_layout);
-        let mut scheduler = Scheduler {
-            outcomes: self,
-            steps,
-            coming: coming.into_iter(),
-            interrupt,
-            observer,
-            under_way: Vec::new(),
-            groups: Vec::new(),
-        };
+        let mut scheduler =
+            Scheduler { outcomes: self, steps, coming: coming.into_iter(), under_way: Vec::new(), groups: Vec::new() };
         scheduler.fly();
     }
 
     /// All outcomes, of which those that are not known yet are flown alone.
-    fn complete(self, alone: impl Fn(&Scenario) -> Result<T, SimulationError>) -> Vec<Result<T, SimulationError>> {
-        let Self { scenarios, known } = self;
+    fn complete(self) -> Vec<Result<Flown, SimulationError>> {
+        let Self { scenarios, kept, interrupt, known } = self;
+        let alone = |scenario| record(scenario, kept, interrupt);
         scenarios.iter().zip(known).map(|(scenario, outcome)| outcome.unwrap_or_else(|| alone(scenario))).collect()
     }
 }
@@ -124,33 +103,31 @@ fn with_like(scenarios: &[Scenario], indices: Vec<usize>) -> Vec<usize> {
 }
 
 /// Which flights fly in which lanes: those that are under way, and scenarios that are to come.
-struct Scheduler<'a, 'b, T, M, O, const N: usize> {
-    outcomes: &'b mut Outcomes<'a, T>,
+struct Scheduler<'a, 'b, const N: usize> {
+    outcomes: &'b mut Outcomes<'a>,
     steps: LaneSteps<N, LANES>,
     coming: std::vec::IntoIter<usize>,
-    interrupt: &'a dyn Interrupt,
-    observer: M,
     /// By their places; those that have ended leave room for others.
-    under_way: Vec<Option<Box<Flying<'a, O, N>>>>,
+    under_way: Vec<Option<Box<Flying<'a, N>>>>,
     /// The places of flights that wait for lanes; the forces of a group are alike.
     groups: Vec<Vec<usize>>,
 }
 
 /// A flight under way.
-struct Flying<'a, O, const N: usize> {
+struct Flying<'a, const N: usize> {
     /// Of its scenario.
     index: usize,
     flight: Flight<'a, Cartesian, N>,
-    observer: O,
+    recorder: Recorder<'a>,
 }
 
-impl<O: Observer<Cartesian, N>, const N: usize> Flying<'_, O, N>
+impl<const N: usize> Flying<'_, N>
 where
     Cartesian: Formulation<N>,
 {
     /// Whether somebody takes the loads at the ends of its steps.
     fn takes_loads(&self) -> bool {
-        self.observer.takes_loads() || self.flight.watches_loads()
+        self.recorder.takes_loads() || self.flight.watches_loads()
     }
 }
 
@@ -171,12 +148,11 @@ impl LaneJob for ReadingsOf<'_> {
     }
 }
 
-impl<T, M, O, const N: usize> Scheduler<'_, '_, T, M, O, N>
+impl<const N: usize> Scheduler<'_, '_, N>
 where
-    M: Fn(&Flight<Cartesian, N>) -> Result<O, SimulationError>,
-    O: Observer<Cartesian, N, Outcome = T>,
     Cartesian: Formulation<N>,
     Cartesian<Lanes<LANES>>: LaneBounds<N, LANES>,
+    AnyStep: From<Step<N>>,
 {
     /// Flies all, the largest group of those whose forces are alike first, as the lanes are full the longest then.
     fn fly(&mut self) {
@@ -200,11 +176,12 @@ where
         let mut count = self.under_way.iter().flatten().count();
         while count < UNDER_WAY {
             let Some(index) = self.coming.next() else { return };
-            let scenario = &self.outcomes.scenarios[index];
+            let Outcomes { scenarios, kept, interrupt, .. } = *self.outcomes;
+            let scenario = &scenarios[index];
             let begun =
-                Flight::start(scenario, Cartesian(scenario.case().forces()), self.interrupt).and_then(|mut flight| {
-                    let observer = (self.observer)(&flight)?;
-                    Ok((flight.begin()?, Box::new(Flying { index, flight, observer })))
+                Flight::start(scenario, Cartesian(scenario.case().forces()), interrupt).and_then(|mut flight| {
+                    let recorder = Recorder::new(&flight, kept, interrupt)?;
+                    Ok((flight.begin()?, Box::new(Flying { index, flight, recorder })))
                 });
             match begun {
                 Ok((None, flying)) => {
@@ -216,16 +193,16 @@ where
                     self.wait(free);
                     count += 1;
                 }
-                Ok((Some(arrival), flying)) => self.end(*flying, arrival),
+                Ok((Some(arrival), mut flying)) => self.end(&mut flying, arrival),
                 Err(error) => self.outcomes.known[index] = Some(Err(error)),
             }
         }
     }
 
     /// Keeps what is wanted of a flight that has ended.
-    fn end(&mut self, flying: Flying<'_, O, N>, arrival: Arrival) {
-        let Flying { index, flight, observer } = flying;
-        self.outcomes.known[index] = Some(observer.finish(flight, arrival));
+    fn end(&mut self, flying: &mut Flying<'_, N>, arrival: Arrival) {
+        let Flying { index, flight, recorder } = flying;
+        self.outcomes.known[*index] = Some(recorder.finish(flight, arrival));
     }
 
     /// Whether the flight at a place goes on after a step; what is wanted of one that has ended, or failed, is kept.
@@ -233,8 +210,8 @@ where
         match passed {
             Ok(None) => return true,
             Ok(Some(arrival)) => {
-                if let Some(flying) = self.under_way[place].take() {
-                    self.end(*flying, arrival);
+                if let Some(mut flying) = self.under_way[place].take() {
+                    self.end(&mut flying, arrival);
                 }
             }
             Err(error) => {
@@ -250,11 +227,11 @@ where
     fn fly_alone(&mut self, place: usize) {
         let before = self.under_way[place].as_ref().map(|flying| flying.flight.phase_and_mode());
         while let Some(flying) = &mut self.under_way[place] {
-            let Flying { flight, observer, .. } = &mut **flying;
+            let Flying { flight, recorder, .. } = &mut **flying;
             if Some(flight.phase_and_mode()) != before {
                 break;
             }
-            let passed = flight.advance().and_then(|step| flight.pass(&step, None, &mut |view| observer.observe(view)));
+            let passed = flight.advance().and_then(|step| flight.pass(&step, None, &mut |view| recorder.observe(view)));
             self.goes_on(place, passed);
         }
         self.wait(place);
@@ -263,11 +240,11 @@ where
     /// Lets a flight wait among its like; while it is stiff, it is flown alone.
     fn wait(&mut self, place: usize) {
         while let Some(flying) = &mut self.under_way[place] {
-            let Flying { flight, observer, .. } = &mut **flying;
+            let Flying { flight, recorder, .. } = &mut **flying;
             if !flight.integrator.is_stiff() {
                 break;
             }
-            let passed = flight.advance().and_then(|step| flight.pass(&step, None, &mut |view| observer.observe(view)));
+            let passed = flight.advance().and_then(|step| flight.pass(&step, None, &mut |view| recorder.observe(view)));
             self.goes_on(place, passed);
         }
         let Some(flying) = &self.under_way[place] else { return };
@@ -280,7 +257,7 @@ where
     /// The group of the flights whose forces are like these.
     fn group_like(&self, forces: &Forces) -> Option<usize> {
         let first = |group: &Vec<usize>| group.first().and_then(|place| self.under_way[*place].as_deref());
-        let is_alike = |first: &Flying<O, N>| first.flight.motion.forces().are_alike(forces);
+        let is_alike = |first: &Flying<N>| first.flight.motion.forces().are_alike(forces);
         self.groups.iter().position(|group| first(group).is_some_and(is_alike))
     }
 
@@ -340,12 +317,12 @@ where
             let readings = self.steps.run(ReadingsOf { forces: &system.0, time, state, with_loads });
             for (lane, place) in lanes.iter_mut().enumerate() {
                 let Some(at) = *place else { continue };
-                let Some(Flying { flight, observer, .. }) = self.under_way[at].as_deref_mut() else { continue };
+                let Some(Flying { flight, recorder, .. }) = self.under_way[at].as_deref_mut() else { continue };
                 if !self.steps.judge(lane, &mut flight.integrator, &flight.motion) {
                     continue;
                 }
                 let read = readings.of_lane(lane);
-                if flight.pass_quietly(&read, observer) {
+                if flight.pass_quietly(&read, recorder) {
                     if flight.integrator.is_stiff() {
                         *place = None;
                         self.wait(at);
@@ -353,7 +330,7 @@ where
                     continue;
                 }
                 let (step, before) = (self.steps.step(lane), flight.phase_and_mode());
-                let passed = flight.pass(&step, Some(&read), &mut |view| observer.observe(view));
+                let passed = flight.pass(&step, Some(&read), &mut |view| recorder.observe(view));
                 let goes_on = self.goes_on(at, passed);
                 let Some(Flying { flight, .. }) = self.under_way[at].as_deref().filter(|_| goes_on) else {
                     *place = None;

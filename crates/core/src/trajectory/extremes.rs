@@ -1,5 +1,7 @@
 //! A finished flight of which nothing is kept between its start, its events, its end and, where they are asked for, its peaks.
 
+use std::sync::Arc;
+
 use super::{Arrival, EventPoint, FlightPoint, Flown, Peaks, Termination, Trajectory};
 use crate::integrate::Statistics;
 use crate::scenario::Case;
@@ -11,7 +13,7 @@ use crate::scenario::Case;
 pub struct Ends(Trajectory);
 
 impl Ends {
-    pub(crate) fn new(case: Case, flown: Flown) -> Self {
+    pub(crate) fn new(case: Arc<Case>, flown: Flown) -> Self {
         Self(Trajectory::unexamined(case, flown))
     }
 
@@ -59,7 +61,7 @@ impl Ends {
 pub struct Extremes(Ends);
 
 impl Extremes {
-    pub(crate) fn new(case: Case, flown: Flown) -> Self {
+    pub(crate) fn new(case: Arc<Case>, flown: Flown) -> Self {
         Self(Ends::new(case, flown))
     }
 

@@ -20,7 +20,6 @@ pub(crate) enum Motion {
 /// The motion inside a step.
 pub(crate) enum AnyInterpolant {
     Six(Interpolant<6>),
-    Seven(Interpolant<7>),
     Eight(Interpolant<8>),
 }
 
@@ -46,7 +45,6 @@ impl AnyInterpolant {
     pub(crate) fn at(&self, motion: &Motion, time: f64) -> State<f64> {
         match self {
             Self::Six(interpolant) => motion.state(&interpolant.state_at(time)),
-            Self::Seven(interpolant) => motion.state(&interpolant.state_at(time)),
             Self::Eight(interpolant) => motion.state(&interpolant.state_at(time)),
         }
     }
@@ -68,10 +66,8 @@ impl Motion {
     pub(crate) fn interpolant(&self, step: &AnyStep) -> AnyInterpolant {
         match (self, step) {
             (Self::Cartesian(motion), AnyStep::Six(step)) => AnyInterpolant::Six(step.interpolant(motion)),
-            (Self::Cartesian(motion), AnyStep::Seven(step)) => AnyInterpolant::Seven(step.interpolant(motion)),
             (Self::Cartesian(motion), AnyStep::Eight(step)) => AnyInterpolant::Eight(step.interpolant(motion)),
             (Self::Spherical(motion), AnyStep::Six(step)) => AnyInterpolant::Six(step.interpolant(motion)),
-            (Self::Spherical(motion), AnyStep::Seven(step)) => AnyInterpolant::Seven(step.interpolant(motion)),
             (Self::Spherical(motion), AnyStep::Eight(step)) => AnyInterpolant::Eight(step.interpolant(motion)),
         }
     }
@@ -80,7 +76,6 @@ impl Motion {
     pub(crate) fn end(&self, step: &AnyStep) -> State<f64> {
         match step {
             AnyStep::Six(step) => self.state(&step.end),
-            AnyStep::Seven(step) => self.state(&step.end),
             AnyStep::Eight(step) => self.state(&step.end),
         }
     }
