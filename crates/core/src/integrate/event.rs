@@ -50,10 +50,11 @@ pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: &impl Inside)
     None
 }
 
-/// Whether a quantity is above zero at both ends of a step and, at their rates, too far to come down and go up again in its time.
+/// Whether a quantity is above zero at both ends of a step and, at their rates, falls all the way between them, or is too far to come down and go up
+/// again in its time.
 pub fn stays_above(start: Dual64, end: Dual64, length: f64) -> bool {
-    let way = start.re + end.re;
-    start.re > 0.0 && end.re > 0.0 && way > REACH * length * start.eps.abs().max(end.eps.abs())
+    let is_far = || start.re + end.re > REACH * length * start.eps.abs().max(end.eps.abs());
+    start.re > 0.0 && end.re > 0.0 && (falls_evenly(start, end, length) || is_far())
 }
 
 /// Whether the ends of a step tell of a fall: the quantity is at or below zero at the end, or falls and rises again, with tangents that
@@ -63,11 +64,11 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
     end.re <= 0.0 || dips()
 }
 
-/// Whether a quantity comes from above zero to below it at rates at both ends that are near the mean one: it falls all the way.
+/// Whether a quantity comes down from above zero through a step at rates at both ends that are near the mean one: it falls all the way.
 fn falls_evenly(start: Dual64, end: Dual64, length: f64) -> bool {
     let mean = (end.re - start.re) / length;
     let is_near_mean = |rate: f64| rate > UNEVEN * mean && UNEVEN * rate < mean;
-    start.re > 0.0 && end.re < 0.0 && is_near_mean(start.eps) && is_near_mean(end.eps)
+    start.re > 0.0 && is_near_mean(start.eps) && is_near_mean(end.eps)
 }
 
 /// The part of the step at which the quantity first comes from above zero to zero.
@@ -141,7 +142,7 @@ impl PredictedCrossing {
 }
 
 /// Whether a falling quantity may reach zero within a time, s, at its rate.
-pub fn may_fall_within(now: Dual64, within: f64) -> bool {
+fn may_fall_within(now: Dual64, within: f64) -> bool {
     now.re > 0.0 && now.eps < 0.0 && now.re < -2.0 * within * now.eps
 }
 

@@ -310,14 +310,13 @@ impl ConditionDetector {
         self.all.iter().any(|pending| pending.status == Status::Due)
     }
 
-    /// Whether nothing happens in a step with such readings at its end, nor is expected in the next one; their lengths, s. Conditions on the time,
-    /// beyond which no step goes, are not asked.
-    pub(super) fn is_quiet(&self, forces: &Forces, ends: &Readings, [length, next]: [f64; 2]) -> bool {
+    /// Whether nothing happens in a step of a length, s, with such readings at its end. Conditions on the time, beyond which no step goes, are not
+    /// asked.
+    pub(super) fn is_quiet(&self, forces: &Forces, ends: &Readings, length: f64) -> bool {
         let mut waiting = self.armed().filter(|(_, pending)| pending.condition.quantity != Quantity::Time);
         waiting.all(|(_, pending)| {
             let [start, end] = [&self.last, ends].map(|readings| pending.before_among(readings));
-            let is_expected = pending.changes_flight && event::may_fall_within(end, next);
-            !is_expected && !event::may_cross(start, end, length, forces.has_tables())
+            !event::may_cross(start, end, length, forces.has_tables())
         })
     }
 

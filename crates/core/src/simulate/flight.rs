@@ -210,21 +210,20 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
         Ok(end)
     }
 
-    /// Passes over a step in which nothing happens that a detector or the recorder would have to look for inside it, nor is expected in the next
-    /// one, as its ends tell: what [`pass`](Self::pass) does then, without the step. Returns whether it is one; otherwise nothing is done.
-    /// The integrator is at its end, where so much was `read`.
+    /// Passes over a step in which nothing happens that a detector or the recorder would have to look for inside it, as its ends tell: what
+    /// [`pass`](Self::pass) does then, without the step. Returns whether it is one; otherwise nothing is done. The integrator is at its end, where so
+    /// much was `read`.
     pub(super) fn pass_quietly(&mut self, read: &EndReadings, recorder: &mut Recorder) -> bool {
         let Self { motion, integrator, stop_altitude, model_boundaries, conditions, log, .. } = self;
         let (forces, time, state) = (motion.forces(), integrator.time(), integrator.state());
         let length = time - self.time;
-        let lengths = [length, integrator.proposed_length()];
         let is_regular = motion.singularity(state, SINGULAR).is_none() && !forces.thrusts_by_velocity();
         let is_left = state.get(MASS).is_none_or(|mass| *mass > NOTHING * self.phase.vehicle.mass);
         if time >= self.horizon
             || !is_regular
             || !is_left
-            || !stop_altitude.is_quiet(read.altitude, lengths)
-            || !read.switches.is_none_or(|ends| model_boundaries.is_quiet(forces, &ends, lengths))
+            || !stop_altitude.is_quiet(read.altitude, length)
+            || !read.switches.is_none_or(|ends| model_boundaries.is_quiet(forces, &ends, length))
         {
             return false;
         }
@@ -233,7 +232,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             let loads = || read.loads.map_or_else(|| forces.loads(now.time, &now.state), |(loads, _)| loads);
             conditions.read_with(forces, &now, loads)
         });
-        if conditions_read.as_ref().is_some_and(|ends| !conditions.is_quiet(forces, ends, lengths)) {
+        if conditions_read.as_ref().is_some_and(|ends| !conditions.is_quiet(forces, ends, length)) {
             return false;
         }
         let step = QuietStep { forces, phase: log.phases.len(), start_time: self.time, end_time: time, read };
@@ -248,6 +247,7 @@ impl<'a, F: Formulation<N>, const N: usize> Flight<'a, F, N> {
             conditions.go_on(ends, length, false);
         }
         (self.time, self.state) = (time, *state);
+        self.look_ahead();
         true
     }
 

@@ -70,12 +70,12 @@ impl ModelBoundaryDetector {
         Self { readings: read(forces, start), before: None }
     }
 
-    /// Whether nothing happens in a step with such readings at its end, nor is expected in the next one; their lengths, s.
-    pub(super) fn is_quiet(&self, forces: &Forces, ends: &Readings, [length, next]: [f64; 2]) -> bool {
+    /// Whether nothing happens in a step of a length, s, with such readings at its end.
+    pub(super) fn is_quiet(&self, forces: &Forces, ends: &Readings, length: f64) -> bool {
         forces.switches().iter().all(|switch| {
             boundaries_around(forces, switch).into_iter().flatten().all(|boundary| {
                 let [start, end] = [&self.readings, ends].map(|readings| boundary.inside(readings[switch as usize]));
-                !event::seems_to_fall(start, end, length) && !event::may_fall_within(end, next)
+                !event::seems_to_fall(start, end, length)
             })
         })
     }

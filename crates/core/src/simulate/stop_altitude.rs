@@ -45,10 +45,9 @@ impl StopAltitudeDetector {
         self.before = None;
     }
 
-    /// Whether nothing happens in a step with an altitude at its end, m, nor is expected in the next one; their lengths, s.
-    pub(super) fn is_quiet(&self, altitude: Dual64, [length, next]: [f64; 2]) -> bool {
-        let height = altitude - self.stop_altitude;
-        event::stays_above(self.height, height, length) && !event::may_fall_within(height, next)
+    /// Whether nothing happens in a step of a length, s, with an altitude at its end, m.
+    pub(super) fn is_quiet(&self, altitude: Dual64, length: f64) -> bool {
+        event::stays_above(self.height, altitude - self.stop_altitude, length)
     }
 
     /// Goes on to the end of a step of a length, s, by the altitude there, m.
