@@ -140,39 +140,69 @@ async fn without_a_band_the_nearest_value_is_told() {
     assert!(answer["narrowest"].as_f64().unwrap() > 0.0);
 }
 
-/// Those of ends and peaks, whether a goal is one value or a range that is kept, beside central differences of flights.
-#[tokio::test]
-async fn derivatives_of_a_solution_are_those_of_flights_beside_it() {
+/// The longitude and geodetic latitude of the end, the greatest load factor, and the time.
+fn goals_of(flown: &Value) -> [f64; 4] {
+    let [peak, last] = [&flown["peaks"]["load_factor"]["value"], &flown["final_state"]];
+    [&last["longitude"], &last["geodetic_latitude"], peak, &last["time"]].map(|number| number.as_f64().unwrap())
+}
+
+/// Looks for a flight that lands at a place, and compares the derivatives of its [goals](goals_of) with central differences of flights; `steps`: by
+/// which the numbers are moved.
+async fn derivatives_agree_with_flights(request: &Value, place: [f64; 2], steps: [f64; 2]) {
     let service = Service::new();
     let goals = json!([
-        {"quantity": "longitude", "equals": 22, "tolerance": 1e-4},
-        {"quantity": "geodetic_latitude", "equals": 25, "tolerance": 1e-4},
+        {"quantity": "longitude", "equals": place[0], "tolerance": 1e-4},
+        {"quantity": "geodetic_latitude", "equals": place[1], "tolerance": 1e-4},
         {"quantity": "load_factor", "at": "peak", "at_most": 100},
         {"quantity": "time", "at_most": 5000},
     ]);
-    let answer = good_answer(&service, "/target", &with(&target(), "/achieve", goals)).await;
+    let answer = good_answer(&service, "/target", &with(request, "/achieve", goals)).await;
     assert_eq!(answer["outcome"], "reached", "{answer}");
     let solution = &answer["solutions"][0];
     let case = with(&solution["case"], "/solver/relative_tolerance", 1e-13);
-    let values = numbers(&solution["values"]);
-    let numbers_at = async |pointer: &str, value: f64| -> Vec<f64> {
-        let flown = good_answer(&service, "/simulate", &with(&case, pointer, value)).await;
-        let of_end = ["longitude", "geodetic_latitude"].map(|column| &flown["final_state"][column]);
-        let others = [&flown["peaks"]["load_factor"]["value"], &flown["final_state"]["time"]];
-        of_end.into_iter().chain(others).map(|number| number.as_f64().unwrap()).collect()
+    let flown_with = async |pointer: &str, value: f64| -> [f64; 4] {
+        goals_of(&good_answer(&service, "/simulate", &with(&case, pointer, value)).await)
     };
-    for (number, pointer) in ["/initial_state/flight_path_angle", "/initial_state/heading"].into_iter().enumerate() {
-        let step = 1e-3;
-        let above = numbers_at(pointer, values[number] + step).await;
-        let below = numbers_at(pointer, values[number] - step).await;
+    for (number, (value, step)) in numbers(&solution["values"]).into_iter().zip(steps).enumerate() {
+        let pointer = request["vary"][number]["pointer"].as_str().unwrap();
+        let above = flown_with(pointer, value + step).await;
+        let below = flown_with(pointer, value - step).await;
         for goal in 0..4 {
             let difference = (above[goal] - below[goal]) / (2.0 * step);
             let derivative = solution["derivatives"][goal][number].as_f64().unwrap();
             // The differences are off by the square of the step, a ten-millionth, and by the noise of flights at 1e-13.
-            let allowed = 1e-5 * difference.abs() + 1e-6;
+            let allowed = 1e-5 * difference.abs() + 1e-9 / step;
             assert!((derivative - difference).abs() < allowed, "{goal} by {pointer}: {derivative} and {difference}");
         }
     }
+}
+
+/// Those of ends and peaks, whether a goal is one value or a range that is kept.
+#[tokio::test]
+async fn derivatives_of_a_solution_are_those_of_flights_beside_it() {
+    derivatives_agree_with_flights(&target(), [22.0, 25.0], [1e-3; 2]).await;
+}
+
+/// By numbers that are no part of the initial state.
+#[tokio::test]
+async fn derivatives_by_a_thrust_and_by_an_entry_of_a_schedule_are_those_of_flights_beside_them() {
+    let thrust = json!({"along": "velocity", "value": -3000, "specific_impulse": 300, "propellant": 60});
+    let schedule = json!({"type": "schedule", "against": "time", "at": [0, 100, 150, 5000], "value": [0, 20, 60, 60]});
+    let case = with_all(
+        &target(),
+        [
+            ("/vehicle/aerodynamics/lift_coefficient", json!(0.3)),
+            ("/control", json!({"bank_angle": schedule})),
+            ("/events", json!([{"when": {"quantity": "time", "rises_through": 5}, "then": {"thrust": thrust}}])),
+        ],
+    );
+    let flown = ["/vary", "/achieve"].iter().fold(case.clone(), |case, member| without(&case, member));
+    let [longitude, latitude, ..] = goals_of(&good_answer(&Service::new(), "/simulate", &flown).await);
+    let vary = json!([
+        {"pointer": "/events/0/then/thrust/value", "between": [-5000, -2000]},
+        {"pointer": "/control/bank_angle/value/2", "between": [40, 80]},
+    ]);
+    derivatives_agree_with_flights(&with(&case, "/vary", vary), [longitude, latitude], [1.0, 1e-2]).await;
 }
 
 #[tokio::test]
