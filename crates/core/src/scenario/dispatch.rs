@@ -67,7 +67,7 @@ pub(crate) trait ForFormulation {
 pub(crate) enum StateLayout {
     /// Nothing.
     Motion,
-    /// The heat load and the mass. Where one of them alone changes, it is not worth a size of states of its own, for which all would be compiled.
+    /// The heat load and the mass. One of them may stay as it is: for each size of states, all that flies is compiled once more.
     HeatLoadAndMass,
 }
 
