@@ -293,13 +293,15 @@ fn falls_are_found_where_they_first_happen() {
     check("far from zero", first_fall(|t| t + 7.0), None);
 }
 
-/// Cubics by their values and rates at the ends of a step, 1 s long: of those whose ends are said to stay above zero, none comes there inside whose
-/// rate inside is at most half as much again as at the ends. Those that fall evenly are found where they fall, and looked at nowhere else first.
+/// Cubics by their values and rates at the ends of a step, 1 s long. Of those that are said to stay above zero, none comes to zero inside that falls
+/// evenly, or whose rate inside is at most half as much again as at the ends. Zeros of those that fall evenly are found without a look at quarters.
 #[test]
 fn what_stays_above_zero_by_its_ends_does_so_inside() {
-    let grid = || (-8..=8).map(|step| 0.25 * f64::from(step));
+    let steps = || (-8..=8).map(|step| 0.25 * f64::from(step));
+    let ends = steps().chain([-0.05, 0.05]);
+    let rates = || steps().chain([-8.0, -6.0, -4.0, -0.1, 0.1, 4.0, 6.0, 8.0]);
     let [mut above, mut below, mut falls] = [0; 3];
-    for (end, start_rate, end_rate) in grid().flat_map(|e| grid().flat_map(move |r| grid().map(move |q| (e, r, q)))) {
+    for (end, start_rate, end_rate) in ends.flat_map(|e| rates().flat_map(move |r| rates().map(move |q| (e, r, q)))) {
         let start = 1.0;
         let bend = 3.0 * (end - start) - 2.0 * start_rate - end_rate;
         let twist = 2.0 * (start - end) + start_rate + end_rate;
@@ -307,19 +309,20 @@ fn what_stays_above_zero_by_its_ends_does_so_inside() {
             let value = start + part * (start_rate + part * (bend + part * twist));
             Dual64::new(value, start_rate + part * (2.0 * bend + 3.0 * part * twist))
         };
-        let inside: Vec<_> = (0..=400).map(|part| cubic(f64::from(part) / 400.0)).collect();
+        let inside: Vec<_> = (0..=200).map(|part| cubic(f64::from(part) / 200.0)).collect();
         let greatest_rate = inside.iter().map(|at| at.eps.abs()).fold(0.0, f64::max);
         let is_tame = greatest_rate <= 1.5 * f64::max(start_rate.abs(), end_rate.abs());
+        let is_near_mean = |rate: f64| 2.0 * rate < end - start && rate > 2.0 * (end - start);
+        let is_even = is_near_mean(start_rate) && is_near_mean(end_rate);
         let least = inside.iter().map(|at| at.re).fold(f64::INFINITY, f64::min);
         let told = || format!("from 1 at {start_rate} to {end} at {end_rate}");
         if event::stays_above(cubic(0.0), cubic(1.0), 1.0) {
             above += 1;
-            assert!(!is_tame || least > 0.0, "{}", told());
+            assert!(least > 0.0 || !is_tame && !is_even, "{}", told());
         } else {
             below += i32::from(least <= 0.0);
         }
-        let is_even = |rate: f64| 2.0 * rate < end - start && rate > 2.0 * (end - start);
-        if end < 0.0 && is_even(start_rate) && is_even(end_rate) {
+        if end < 0.0 && is_even {
             falls += 1;
             let first = Cell::new(None);
             let observed = |part: f64| {

@@ -295,7 +295,7 @@ pub fn reciprocal_or_one<S: Scalar>(length: S) -> S {
     length_or_one(length).recip()
 }
 
-/// [One over](reciprocal_or_one) each of two lengths, and over both. Of one division, which takes as long as a dozen products.
+/// [One over](reciprocal_or_one) each of two lengths, and one over their product. One division serves all three.
 #[inline(always)]
 pub fn reciprocals_or_one<S: Scalar>([one, other]: [S; 2]) -> ([S; 2], S) {
     let [one, other] = [one, other].map(length_or_one);
@@ -303,6 +303,7 @@ pub fn reciprocals_or_one<S: Scalar>([one, other]: [S; 2]) -> ([S; 2], S) {
     ([over_both * other, over_both * one], over_both)
 }
 
+/// The length; 1 in place of none.
 #[inline(always)]
 fn length_or_one<S: Scalar>(length: S) -> S {
     S::select(length.less_than(f64::MIN_POSITIVE), S::one(), length)

@@ -50,8 +50,8 @@ pub fn first_fall(start: Dual64, end: Dual64, length: f64, inside: &impl Inside)
     None
 }
 
-/// Whether a quantity is above zero at both ends of a step and, at their rates, falls all the way between them, or is too far to come down and go up
-/// again in its time.
+/// Whether a quantity is above zero at both ends of a step and stays so between them: at the rates there it falls all the way, or is too far from zero to
+/// come down and go up again in the time of the step.
 pub fn stays_above(start: Dual64, end: Dual64, length: f64) -> bool {
     let is_far = || start.re + end.re > REACH * length * start.eps.abs().max(end.eps.abs());
     start.re > 0.0 && end.re > 0.0 && (falls_evenly(start, end, length) || is_far())
@@ -64,7 +64,8 @@ pub fn seems_to_fall(start: Dual64, end: Dual64, length: f64) -> bool {
     end.re <= 0.0 || dips()
 }
 
-/// Whether a quantity comes down from above zero through a step at rates at both ends that are near the mean one: it falls all the way.
+/// Whether a quantity starts above zero and falls all the way through a step: its rates at both ends are near the mean one. Then it crosses zero once
+/// at most, and need not be looked at in quarters of the step.
 fn falls_evenly(start: Dual64, end: Dual64, length: f64) -> bool {
     let mean = (end.re - start.re) / length;
     let is_near_mean = |rate: f64| rate > UNEVEN * mean && UNEVEN * rate < mean;
